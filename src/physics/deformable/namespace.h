@@ -10,7 +10,7 @@ namespace dynamic {}
 /// Soft solids, cloth and ropes: elements, implicit steps, and their contacts with bodies and each other.
 namespace embody::physics::deformable {
 
-// The rooms that it may see (docs/architecture.md).
+// Namespaces that it may use (docs/architecture.md).
 using namespace collision;
 using namespace linear;
 using namespace dynamic;

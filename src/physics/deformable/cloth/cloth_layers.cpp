@@ -52,7 +52,7 @@ ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triang
     edge_length_ /= static_cast<double>(edges_.size());
 }
 
-// What lay that near on the same side when it was made belongs together.
+// Features that lay that close on the same side when the sheet was made belong together.
 bool ClothLayers::is_same_layer(const LayerContact& contact, double reach) const {
     const std::size_t other = contact.kind == ThinFeature::edge_on_edge ? 2 : 1;
     if (dot(rest_normal_[contact.node[0]], rest_normal_[contact.node[other]]) <= 0) return false;
@@ -61,7 +61,7 @@ bool ClothLayers::is_same_layer(const LayerContact& contact, double reach) const
     return length(away) < reach;
 }
 
-// The whole's own move is left out: what falls together does not meet.
+// The move of the whole is left out: parts that fall together do not meet.
 void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
     const Nodes& nodes = search.nodes;
     Vec3 mean;
@@ -187,8 +187,8 @@ void push(const LayerContact& contact, Vec3 by, std::span<const double> complian
         moves[contact.node[k]] += (contact.weight[k] * compliance[contact.node[k]]) * by;
 }
 
-// Where pushes did not part them all: nodes that would pass through each other go together for this substep, with the
-// mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
+// Where pushes did not separate them all: nodes that would pass through each other move together for this substep, with
+// the mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
 void join(std::span<const LayerContact> contacts, const LayerParting& parting, std::span<Vec3> moves) {
     const std::span<const double> compliance = parting.compliance;
     const double min_fraction = parting.settings.joining_gap_fraction;

@@ -16,7 +16,7 @@
 
 namespace embody::physics::deformable {
 
-/// A node over a triangle of the same sheet, or two of its edges that cross: Σ weight x is the way between their
+/// A node over a triangle of the same sheet, or two of its edges that cross: Σ weight x is the vector between their
 /// nearest points when the substep began, `distance` (m) long along the unit `normal`.
 struct LayerContact {
     ThinFeature kind = ThinFeature::node_on_triangle;
@@ -29,7 +29,7 @@ struct LayerContact {
 
 /// How ClothLayers::part() keeps layers apart.
 struct LayerParting {
-    double thickness = 0;                ///< that they keep, m
+    double thickness = 0;                ///< distance that they keep, m
     double friction = 0;                 ///< Coulomb coefficient
     std::span<const double> compliance;  ///< of the nodes, 1/kg; 0: none
     ClothSettings settings = {};
@@ -40,14 +40,14 @@ class ClothLayers {
 public:
     ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes);
 
-    /// Changes `moves` (m) so that what would come nearer than the thickness along the line between them stays that
-    /// far apart, or as near as it was; sliding is braked by friction. Momentum is kept. What moves by more than about
-    /// half an edge against another layer in one substep may be missed.
+    /// Changes `moves` (m) so that features that would come closer than the thickness along the line between them stay
+    /// that far apart, or as close as they were; sliding is braked by friction. Momentum is kept. Contacts of features
+    /// that move by more than about half an edge against another layer in one substep may be missed.
     void part(const Nodes& nodes, const LayerParting& parting, std::span<Vec3> moves, TaskPool& workers);
-    /// What may come nearer than twice `reach` (m) by these moves, in the order that PairSprings asks for.
+    /// Candidates that may come closer than twice `reach` (m) by these moves, in the order that PairSprings needs.
     [[nodiscard]] std::vector<ThinCandidate> near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
                                                   const ClothSettings& settings, TaskPool& workers);
-    /// The longest way (m) that those which come near each other by these moves go against each other.
+    /// Maximum relative displacement (m) of features that come close to each other by these moves.
     [[nodiscard]] double max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
                                           const ClothSettings& settings, TaskPool& workers);
     /// Mean, m.
@@ -67,7 +67,7 @@ private:
                      std::vector<LayerContact>& found) const;
     void search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
                       std::vector<LayerContact>& found) const;
-    // Of a way that some nodes go.
+    // Of a displacement of some nodes.
     [[nodiscard]] Bounds box_around(const auto& nodes) const {
         Bounds box;
         for (const std::uint32_t node : nodes) box.add(node_boxes_[node]);
@@ -82,7 +82,7 @@ private:
     PatchTree patches_;
     std::vector<std::vector<std::uint32_t>> leaf_nodes_, leaf_edges_;  // each in one leaf that has a triangle with it
 
-    // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it.
+    // Of the substep. Boxes hold the path of a feature, without the move of the whole, and the thickness around it.
     std::vector<Bounds> node_boxes_, triangle_boxes_;
     std::vector<LeanMask> leans_;  // of triangles, at its start and its end
     std::vector<std::array<std::uint32_t, 2>> leaf_pairs_;

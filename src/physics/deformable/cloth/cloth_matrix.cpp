@@ -13,8 +13,8 @@ void SliceBlocks::set(std::size_t slice, std::size_t lane, const Block& block) {
     }
 }
 
-// Elements of a slice that lie on one diagonal share a slot where they fill enough of it: a load of neighbours instead
-// of one a row. Sheets that are meshed row by row have nearly no others.
+// Elements of a slice that lie on one diagonal have a common slot where they fill enough of it: one load of neighbours
+// instead of one a row. Sheets that are meshed row by row have nearly no others.
 void ClothMatrix::Slots::make(std::span<const std::vector<std::uint32_t>> rows) {
     constexpr int min_band_rows = 6;  // of slice_rows: fewer cost more as a band than one by one
     const auto places = static_cast<std::int64_t>(slices_for(rows.size()) * slice_rows);

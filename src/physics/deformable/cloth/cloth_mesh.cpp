@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Bending by the rotation-free triangle of E. Oñate and F. Zárate, "Rotation-free triangular plate and shell elements",
-// International Journal for Numerical Methods in Engineering 47 (2000): the curvature of a triangle is told by the
+// International Journal for Numerical Methods in Engineering 47 (2000): the curvature of a triangle is given by the
 // slopes across its edges, each the mean of the two triangles that share the edge. With the hinge vector of M. Bergou,
 // M. Wardetzky, D. Harmon, D. Zorin and E. Grinspun, "A quadratic bending model for inextensible surfaces" (2006),
 // linear in the nodes, in the place of edge length times angle, the energy is quadratic and keeps its value when the
@@ -81,7 +81,7 @@ using Pairs = std::map<Edge, double>;  // of the upper half and the diagonal
 void add_product(const Hinge& a, const Hinge& b, double factor, Pairs& pairs) {
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = 0; k < 4; ++k) {
-            // Both (a, b) and (b, a) come along: each ordered pair of nodes is met once, its mirror image in the other.
+            // Both (a, b) and (b, a) occur: each ordered pair of nodes once, its mirror image in the other triangle.
             if (a.node[i] <= b.node[k]) pairs[{a.node[i], b.node[k]}] += factor * a.weight[i] * b.weight[k];
         }
     }

@@ -16,9 +16,9 @@ inline constexpr std::size_t slice_rows = 16;
 /// Floats of a 3 × 3 block for each node of a slice: element (r, c) of lane l is at (3 c + r) slice_rows + l.
 inline constexpr std::size_t slice_block = 9 * slice_rows;
 
-/// Elements beside the diagonal. Slot k holds one of each row of a slice, zero where a row has none there: of slice s
-/// the slots from start[s] to start[s + 1]. Those before rest[s] lie on one diagonal, offset[k] columns from each row;
-/// of the others `column` names slice_rows columns a slot (what it has for bands is not read).
+/// Elements beside the diagonal. Slot k holds one element of each row of a slice, zero where a row has none there: of
+/// slice s the slots from start[s] to start[s + 1]. Those before rest[s] lie on one diagonal, offset[k] columns from
+/// each row; of the others `column` names slice_rows columns a slot (what it has for bands is not read).
 struct ClothSlots {
     const std::uint32_t *start, *rest;
     const std::int32_t* offset;
@@ -34,7 +34,7 @@ struct ClothRows {
 };
 
 /// Vectors over nodes: the first coordinates of all, then the second and third ones, `stride` floats apart; zero in
-/// lanes beyond the last node. Begins of the sheet that a kernel works on.
+/// lanes beyond the last node. Pointers to the first element of the sheet that a kernel works on.
 struct ClothVectors {
     std::size_t stride;
     float *p, *q, *r, *z, *x;  ///< as in linear/conjugate_gradient.h

@@ -2,8 +2,8 @@
 //
 // Stretch and shear as in D. Baraff and A. Witkin, "Large steps in cloth simulation" (1998), section 4, with F = (f g)
 // the images of the unit steps along warp and weft: energy per area ½ k ((|f| - 1)² + (|g| - 1)²) + ½ s (f·g)². Of
-// their second derivative we keep what is positive: the stress of a stretched triangle stiffens it across, that of a
-// pressed one would let it buckle and is left out of the matrix, not out of the force.
+// their second derivative we keep the positive part: the stress of a stretched triangle stiffens it across; that of a
+// compressed one would make it buckle and is left out of the matrix, not out of the force.
 #include "physics/deformable/cloth/cloth_sheet.h"
 
 #include <algorithm>
@@ -73,7 +73,7 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition)
     layers_.emplace(cloth_.triangles, definition.nodes);
 }
 
-// Blocks between corners of a triangle, numbers between the nodes that only bending joins.
+// Blocks between corners of a triangle, numbers between the nodes that only bending couples.
 void ClothSheet::make_pattern(const ScalarRows& bending) {
     const std::size_t count = nodes_.size();
     std::vector<std::map<std::uint32_t, std::uint32_t>> neighbours(count);
@@ -156,7 +156,7 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
             strain.shear = s * damped;
             make_positive(strain.across_ff, strain.across_fg, strain.across_gg);
 
-            // Drag by what blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
+            // Drag by the air that blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
             const Vec3 normal = normalized(cross(strain.f, strain.g));
             winds_[t] = substep.wind.at((nodes_.position[triangle.node[0]] + nodes_.position[triangle.node[1]] +
                                          nodes_.position[triangle.node[2]]) /
@@ -253,7 +253,7 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
         iterations_ += iterations;
         ++solves_;
         if (all.empty() || solves_ == max_solves) break;
-        // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.
+        // The last solve's springs stay as they were in it, so that bodies and nodes have the same force.
         TouchSprings next = springs_;
         PairSprings next_layers = layer_springs_;
         const bool has_changed = next.choose(moves_, body_moves_, false);
@@ -270,7 +270,7 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     return true;
 }
 
-// Only while nothing outside but weight, air and what is `given` acts.
+// Only while no external forces but weight, air and `given` act.
 void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given) {
     const double h = substep.h;
     std::vector<Vec3> all(nodes_.size());
@@ -283,7 +283,7 @@ void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> giv
     keep_momenta(nodes_, all, h, substep.settings.thin_contact, moves_);
 }
 
-// As of two sheets, but that this one is both.
+// As for two sheets; here both are this one.
 void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
     const double gravity = length(substep.gravity);
     std::vector<Vec3> moves(nodes_.size());
@@ -303,7 +303,7 @@ void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
                          {substep.h, gravity, substep.settings.thin_contact});
 }
 
-// What no spring held off in time; what lies on a body gives way last.
+// Separates what no spring kept apart in time; nodes on a body move last.
 void ClothSheet::part_layers(const ClothSettings& settings, TaskPool& workers) {
     std::vector<double> compliance = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
@@ -314,7 +314,8 @@ void ClothSheet::part_layers(const ClothSettings& settings, TaskPool& workers) {
     layers_->part(nodes_, parting, moves_, workers);
 }
 
-// Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
+// Layers are kept apart reliably where they pass each other by no more than half an edge: faster layers take more
+// parts.
 int ClothSheet::parts_of(double h, const ClothSettings& settings, TaskPool& workers) {
     const double max_travel = settings.max_layer_travel * layers_->edge_length();
     Vec3 mean;
@@ -378,7 +379,7 @@ void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::s
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
     if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
         keep_momentum(substep, given);
-    std::vector<Vec3> within(nodes_.size());  // forces that are in the moves already
+    std::vector<Vec3> within(nodes_.size());  // forces that the moves include already
     layer_springs_.finish(moves_, within, layer_contacts_);
     springs_.finish(moves_, body_moves, substep, bodies);
     part_layers(substep.settings.cloth, workers);

@@ -34,15 +34,15 @@ public:
     void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
-    /// What the solve needs of it, valid until the next begin().
+    /// The sheet's equations for the solve, valid until the next begin().
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     /// Where the sheet touches itself.
     [[nodiscard]] PairSprings& layers() { return layer_springs_; }
-    /// How each node resists on its own, N/m, since begin().
+    /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
-    /// Goes by these moves, which touch() and layers() were solved with. `given`: forces on the nodes besides, N; none
-    /// or one a node. Pushes the bodies.
+    /// Moves the nodes by these moves, which touch() and layers() were solved with. `given`: forces on the nodes
+    /// besides, N; none or one a node. Pushes the bodies.
     void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers);
     /// Stops it for good where it is.
@@ -57,8 +57,7 @@ public:
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
-    /// Energies of what it is now, J.
-    /// What it touches goes on as of another sheet of as many nodes.
+    /// Present energies, J. Contacts are taken over from another sheet of as many nodes.
     void go_on_from(const ClothSheet& other) {
         springs_.go_on_from(other.springs_);
         layer_contacts_ = other.layer_contacts_;
@@ -70,19 +69,19 @@ public:
     [[nodiscard]] const ThinContacts& layer_contacts() const { return layer_contacts_; }
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
-    /// Rounds of conjugate gradients in the last substep, and solves.
+    /// Iterations of conjugate gradients in the last substep, and solves.
     [[nodiscard]] int iterations() const { return iterations_; }
     [[nodiscard]] int solves() const { return solves_; }
 
     ClothSolver solver;
 
 private:
-    // How a triangle meets a node's row of the matrix.
+    // Position of a triangle's elements in a node's row of the matrix.
     struct Corner {
         std::uint32_t triangle = 0, corner = 0;
-        std::array<std::uint32_t, 3> element{};  // of the row, near its diagonal; own: the diagonal
+        std::array<std::uint32_t, 3> element{};  // of the row's near elements; own: the diagonal
     };
-    // Of a triangle, this substep: F's columns and what the energy makes of them.
+    // Of a triangle, this substep: F's columns and the derivatives of the energy by them.
     struct Strain {
         Vec3 f, g;                             // images of the unit steps along warp and weft
         Vec3 f_displacement, g_displacement;   // their directions
@@ -99,7 +98,7 @@ private:
     void keep_momentum(const Substep& substep, std::span<const Vec3> given);
     void find_layers(const Substep& substep, TaskPool& workers);
     void part_layers(const ClothSettings& settings, TaskPool& workers);
-    // Layers lie as far from each other as two of them from a body between.
+    // Distance of layers: as if a body of no thickness lay between them.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 
     Cloth cloth_;
@@ -110,12 +109,12 @@ private:
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
     std::vector<double> near_bending_;        // of the blocks between neighbours
-    std::vector<std::uint32_t> far_element_;  // of bending_'s elements: which of the row's far ones each is
+    std::vector<std::uint32_t> far_element_;  // of bending_'s elements: the index of each among the row's far elements
     TouchSprings springs_;
     std::optional<ClothLayers> layers_;
-    PairFriction layer_friction_;  // of the sheet on itself
+    PairFriction layer_friction_;  // of the sheet with itself
     PairSprings layer_springs_;
-    ThinContacts layer_contacts_;  // what they have left from the last substep
+    ThinContacts layer_contacts_;  // their memory of the last substep
     std::vector<std::uint8_t> fixed_;
 
     // Of the substep.

@@ -105,7 +105,7 @@ Vec3 ClothSolver::p_of(std::uint32_t node) const {
     return node < nodes_ ? to_vec3(p_.at(place_[node])) : line_p_[node - nodes_];
 }
 
-// What springs add between nodes and to bodies: what the blocks of nodes and lines hold is in their products already.
+// Terms of springs between nodes and on bodies; the products of the blocks of nodes and lines include theirs already.
 void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     double sum = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -153,7 +153,7 @@ void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<co
     curvatures_.back() = sum;
 }
 
-// z = D⁻¹ r is done; now the bodies, and what their moves change at the nodes that they touch.
+// z = D⁻¹ r is done; now the bodies, and the effect of their moves on the nodes that they touch.
 void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     body_z_ = body_r_;
     const auto is_held = [&](std::uint32_t s) {
@@ -179,8 +179,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
     follow_bodies();
 }
 
-// p = z + β p of bodies and lines. What a line's factor L Lᵀ = A makes of p is known: A z = r less what bodies take
-// along.
+// p = z + β p of bodies and lines. The product of a line's A = L Lᵀ with p is known: A z = r less the bodies' part.
 void ClothSolver::turn_others(double beta) {
     for (std::size_t b = 0; b < body_p_.size(); ++b)
         body_p_[b] = {body_z_[b].shift + beta * body_p_[b].shift, body_z_[b].turn + beta * body_p_[b].turn};
@@ -204,7 +203,8 @@ void ClothSolver::advance_others(double alpha) {
     }
 }
 
-/// The system as a worker sees it: sheets are shared by their chunks, bodies and lines are the first worker's.
+/// The system for one worker: the chunks of sheets are distributed over the workers, the first worker has bodies and
+/// lines.
 struct ClothSolver::WorkerSystem {
     ClothSolver& of;
     std::span<const SheetSystem> sheets;
@@ -274,7 +274,7 @@ double ClothSolver::sum_of_others() const {
     return sum;
 }
 
-// Lines begin with what they would do alone. Returns the square of the small loads in the preconditioner's norm.
+// Lines begin with their solution alone. Returns the square of the small loads in the preconditioner's norm.
 double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                           std::span<const TouchSpring> springs, std::span<const Vec3> moves) {
     double load = 0;
@@ -312,7 +312,7 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
     return load;
 }
 
-// Of the guess, forces of springs with it.
+// Residual of the guess, with the forces of springs.
 void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                                 std::span<const BodyInertia> bodies, TaskPool& workers) {
     parallel_for(workers, chunks_.size(), nodes_ >= min_parallel_count, [&](int, IndexRange range) {
@@ -335,7 +335,7 @@ void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<c
         body_r_[spring.body].shift -= spring.load;
         body_r_[spring.body].turn -= cross(spring.arm, spring.load);
     }
-    // A line's own equations hold, so what is left is what couples it.
+    // A line's own equations hold, so only its couplings are left.
     for (std::size_t i = 0; i < line_of_.size(); ++i) line_r_[i] = line_fixed_[i] ? Vec3{} : line_ap_[i] - line_q_[i];
 }
 
@@ -351,7 +351,7 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     find_residual(sheets, springs, bodies, workers);
     curvatures_.back() = 0;
     // The norm of the preconditioner leaves out fixed nodes: their residual is the force that holds them.
-    constexpr double rounding = 1e-12;  // floats cannot tell less of the first residual
+    constexpr double rounding = 1e-12;  // of the first residual: floats do not resolve less
     const double tolerance = settings_.gradient_tolerance;
     const GradientLimits limits{settings_.max_gradient_iterations, tolerance * tolerance * load, rounding};
     const int count = nodes_ >= min_parallel_count ? workers.workers() : 1;

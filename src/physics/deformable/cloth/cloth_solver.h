@@ -24,7 +24,7 @@ struct SheetSystem {
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
 };
 
-/// What the equations minimise for these moves, J, one a node.
+/// The function that the equations minimise, for these moves, J, one number a node.
 double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves);
 
 /// A rope's part of them. The solver adds the springs to `matrix` and factorises it.
@@ -38,18 +38,18 @@ struct LineSystem {
 /// The conjugate gradient (linear/conjugate_gradient.h) for the moves of nodes and touched bodies,
 ///   (A + springs) d = rhs.
 /// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it, and of
-/// all that couples the nodes of a line: springs and lines of any stiffness cost no rounds. Sheets in floats, sums in
-/// doubles and in a fixed order: same bits for any worker count.
+/// all that couples the nodes of a line: springs and lines of any stiffness cost no iterations. Sheets are solved in
+/// floats, sums are in doubles and in a fixed order: same bits for any worker count.
 class ClothSolver {
 public:
     /// Nodes are counted through, sheet after sheet, then line after line: by those numbers springs name them. `moves`:
     /// first guess and answer. It ends when the residual is gradient_tolerance of the small loads in the norm of the
-    /// preconditioner. Returns the rounds that it took, or not_finite where numbers have broken.
+    /// preconditioner. Returns the number of iterations, or not_finite where numbers became non-finite.
     int solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
               std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
               std::span<BodyMove> body_moves, TaskPool& workers);
 
-    static constexpr int not_finite = -1;  ///< in the place of a number of rounds
+    static constexpr int not_finite = -1;  ///< in the place of a number of iterations
     /// Of the world, before a step's first solve().
     void set(const ClothSettings& settings) { settings_ = settings; }
 
@@ -57,15 +57,15 @@ private:
     static constexpr std::size_t min_parallel_count = 1000;  // nodes
 
     struct BodyFactor {
-        std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
+        std::array<double, 36> factor{};  // mass and springs, less the compliance of nodes
     };
-    // What is between a line and a body: a column each unknown of the body, and what the line's factor makes of it.
+    // Coupling of a line and a body: a column for each unknown of the body, and the line's solution for it.
     struct LineHold {
         std::uint32_t body = 0;
         std::size_t line = 0;
         std::array<std::vector<Vec3>, 6> column, given;
     };
-    // What springs couple a node of a sheet with another of any.
+    // Coupling by springs of a node of a sheet with another node of any member.
     struct Link {
         std::uint32_t row = 0, column = 0;
         Block block;
@@ -117,7 +117,7 @@ private:
     std::vector<Float4> quads_;  // p again, node by node
     std::vector<BodyMove> body_p_, body_q_, body_r_, body_z_, body_x_;
     std::vector<Vec3> line_p_, line_q_, line_r_, line_z_, line_x_;
-    std::vector<Vec3> line_ap_, line_az_;  // A p and A z, of a line's own factor A; q has what couples it besides
+    std::vector<Vec3> line_ap_, line_az_;  // A p and A z with a line's own matrix A; q has its other couplings
     std::vector<BodyFactor> body_factors_;
     std::vector<LineHold> line_holds_;
     std::vector<std::uint32_t> line_of_;
@@ -127,10 +127,10 @@ private:
     std::vector<Chunk> chunks_;
     std::vector<std::size_t> sheet_first_, sheet_slice_;  // node and slice where a sheet begins
     std::vector<std::uint32_t> place_;                    // of a node: lanes of all slices counted through
-    std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
+    std::vector<std::uint32_t> coupled_;  // springs that are neither in the preconditioner's blocks nor in links
     std::vector<Link> links_;             // by row
     const ClothRowKernels* kernels_ = &widest_kernels<ClothRowKernels>();
-    std::vector<double> curvatures_, residuals_;  // p · q and z · r by chunk; the last one is of all else
+    std::vector<double> curvatures_, residuals_;  // p · q and z · r by chunk; the last one has all the rest
     std::size_t nodes_ = 0;                       // of sheets
 };
 

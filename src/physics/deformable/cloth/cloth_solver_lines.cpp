@@ -34,8 +34,8 @@ bool ClothSolver::prepare_lines(std::span<const LineSystem> lines, std::span<con
     return true;
 }
 
-// Without the preconditioner knowing how a line and a light body that hangs on it move together, the residual would
-// tell next to nothing of that.
+// If the preconditioner did not include how a line and a light body that hangs on it move together, the residual would
+// hardly show their error.
 void ClothSolver::prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     line_holds_.clear();
     for (const std::uint32_t s : coupled_) {
@@ -63,7 +63,7 @@ void ClothSolver::prepare_line_holds(std::span<const TouchSpring> springs, std::
     }
 }
 
-// What the body feels of a line that gives way: less by Cᵀ A⁻¹ C.
+// Stiffness for the body, reduced by the line's compliance: less Cᵀ A⁻¹ C.
 void ClothSolver::apply_line_hold(const LineHold& hold) {
     for (std::size_t r = 0; r < 6; ++r) {
         for (std::size_t c = 0; c < 6; ++c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a solve needs before its first iteration: where everything lies, and the preconditioner.
+// Preparation of a solve: the places of all elements, and the preconditioner.
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +40,7 @@ void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
 
 }  // namespace
 
-// Whether the preconditioner holds all of it: one node, or nodes of one line, and no body that moves.
+// Whether the preconditioner includes all of a spring: one node, or nodes of one line, and no body that moves.
 bool ClothSolver::is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
     if (moves_body(spring, bodies)) return false;
     for (std::size_t k = 1; k < static_cast<std::size_t>(spring.count); ++k) {
@@ -128,7 +128,7 @@ bool ClothSolver::is_between_sheets(const TouchSpring& spring, std::span<const B
     return !moves_body(spring, bodies) && std::ranges::all_of(nodes, [&](std::uint32_t n) { return n < nodes_; });
 }
 
-// What a spring between nodes of sheets adds beside the diagonal.
+// Terms of a spring between nodes of sheets beside the diagonal.
 void ClothSolver::add_links(const TouchSpring& spring, std::vector<Link>& links) {
     for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
         for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
@@ -169,7 +169,7 @@ void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span
         if (!moves_body(spring, bodies)) continue;
         const Mat3& k = spring.matrix;
         auto& factor = body_factors_[spring.body].factor;
-        // A single node gives way: K - K D⁻¹ K is what the body feels of it.
+        // A single node is compliant: the body's stiffness by it is K - K D⁻¹ K.
         const bool is_single = spring.count == 1 && spring.node[0] < nodes_;
         const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
         add_at_arm(factor, felt, spring.arm);

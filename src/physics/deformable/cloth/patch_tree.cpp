@@ -9,7 +9,8 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr std::size_t leaf_size = 4;        // triangles, at least; fewer than twice as many: block size
+constexpr std::size_t leaf_size = 4;        // minimum number of triangles; the maximum is less than twice as many:
+                                            // block size
 constexpr std::size_t largest_piece = 256;  // triangles: a longer strip could wind itself over itself
 
 // Triangles around each node.
@@ -35,13 +36,13 @@ Around triangles_around(std::span<const PatchTree::Triangle> triangles, std::siz
     return around;
 }
 
-// Walks over triangles from neighbour to neighbour, breadth first, within a patch.
+// Traverses triangles from neighbour to neighbour, breadth first, within a patch.
 class PatchWalk {
 public:
     PatchWalk(std::span<const PatchTree::Triangle> triangles, std::size_t nodes)
         : triangles_(triangles), around_(triangles_around(triangles, nodes)), patch_(triangles.size(), 0) {}
 
-    /// Puts `patch` into the order in which a walk from an outermost triangle comes to them; piece after piece.
+    /// Puts `patch` into the order in which a traversal from an outermost triangle comes to them; piece after piece.
     /// Returns how many pieces there are.
     std::size_t sort(std::span<std::uint32_t> patch) {
         walk(patch, patch[0]);
@@ -89,7 +90,8 @@ private:
 }  // namespace
 
 LeanMask leans_of(Vec3 normal) {
-    constexpr double min_cosine = 0.3;  // any above zero is right: the larger, the fewer triangles share a direction
+    constexpr double min_cosine = 0.3;  // any above zero is right: the larger, the fewer triangles have a common
+                                        // direction
     const double size = length(normal);
     if (!(size > 0)) return 0;
     const auto [x, y, z] = normal;
@@ -155,7 +157,7 @@ void PatchTree::find_neighbours(std::span<const Triangle> triangles, std::size_t
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     };
     keep_each_once();
-    // What is next to each other in a depth has its parents next to each other, or is of one.
+    // Neighbours of one depth have neighbouring parents, or the same parent.
     std::vector<std::array<std::uint32_t, 2>> depth = pairs;
     while (!depth.empty()) {
         std::vector<std::array<std::uint32_t, 2>> above;

@@ -11,26 +11,28 @@
 
 namespace embody::physics::deformable {
 
-/// Directions that all normals of some triangles lean to, a bit each. Triangles of one piece that share such a
-/// direction lie over each other nowhere along it (P. Volino and N. Magnenat-Thalmann, "Efficient self-collision
-/// detection on smoothly discretized surface animations using geometrical shape regularity", 1994; directions as in J.
-/// Mezger, S. Kimmerle and O. Etzmuß, "Hierarchical techniques in collision detection for cloth animation", 2003).
+/// Directions with which all normals of some triangles have a positive product, a bit each. Triangles of one connected
+/// piece with such a common direction nowhere lie over each other along it (P. Volino and N. Magnenat-Thalmann,
+/// "Efficient self-collision detection on smoothly discretized surface animations using geometrical shape regularity",
+/// 1994; directions as in J. Mezger, S. Kimmerle and O. Etzmuß, "Hierarchical techniques in collision detection for
+/// cloth animation", 2003).
 using LeanMask = std::uint32_t;
 inline constexpr LeanMask all_leans = 0x3FFF;  ///< 14: faces and corners of a cube
 /// Of a triangle's normal of any length; none for zero.
 LeanMask leans_of(Vec3 normal);
 
 /// Patches of a sheet's triangles in halves, and halves of those, down to a few triangles, to find where it may touch
-/// itself: only patches whose boxes overlap, and of neighbours only such as are bent enough.
+/// itself: only patches whose boxes overlap are compared, and neighbours only if they are bent enough.
 class PatchTree {
 public:
     using Triangle = std::array<std::uint32_t, 3>;
     /// `nodes`: how many there are.
     PatchTree(std::span<const Triangle> triangles, std::size_t nodes);
 
-    /// What the search needs of each triangle.
+    /// Data of each triangle for the search.
     void update(std::span<const Bounds> boxes, std::span<const LeanMask> leans);
-    /// Pairs of leaves, the lower first, one with itself too, that may have something that touches; in a fixed order.
+    /// Pairs of leaves that may have triangles that touch, the lower first, also of a leaf with itself; in a fixed
+    /// order.
     void find_pairs(std::vector<std::array<std::uint32_t, 2>>& pairs) const;
 
     [[nodiscard]] std::uint32_t leaves() const { return static_cast<std::uint32_t>(leaf_start_.size()) - 1; }
@@ -43,7 +45,8 @@ public:
 private:
     // A full binary tree: patch p has the halves 2 p + 1 and 2 p + 2; all leaves lie equally deep.
     struct Neighbours {
-        std::vector<std::uint32_t> start, other;  // of a patch, those of its depth that share nodes with it, ascending
+        std::vector<std::uint32_t> start, other;  // of a patch, those of its depth that have common nodes with it,
+                                                  // ascending
     };
     void order_halves(std::span<const Triangle> triangles, std::size_t nodes);
     void find_neighbours(std::span<const Triangle> triangles, std::size_t nodes);
@@ -53,7 +56,7 @@ private:
     [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
 
     std::vector<std::uint32_t> order_, leaf_start_, leaf_of_;
-    std::vector<bool> is_piece_;  // of a patch: small enough, and each of its triangles hangs on the others
+    std::vector<bool> is_piece_;  // of a patch: small enough, and its triangles are connected
     Neighbours neighbours_;
     // Of the substep, of patches.
     std::vector<Bounds> boxes_;

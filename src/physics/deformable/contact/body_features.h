@@ -15,8 +15,8 @@ struct BodyFeature {
     double radius = 0;
 };
 
-/// Corners, centres of balls, ends of capsules, points of rims. None of planes, heightfields and meshes, whose faces
-/// the nodes find.
+/// Corners, centres of balls, ends of capsules, points of rims. None of planes, heightfields and meshes: nodes touch
+/// the faces of these.
 std::vector<BodyFeature> find_features(const ShapeDefinition& shape);
 
 }  // namespace embody::physics::deformable

@@ -5,8 +5,8 @@ namespace embody::physics::deformable {
 
 // Counting sort of the boxes into the cells that they may reach.
 void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
-    constexpr double cell_fraction = 1.5;  // cells over usual size: what costs least time
-    constexpr double max_cells = 8;        // that a box spans along an axis: bounds the time
+    constexpr double cell_fraction = 1.5;  // cells over usual size: the fastest value
+    constexpr double max_cells = 8;        // maximum number that a box spans along an axis: bounds the time
     std::size_t buckets = 1;
     while (buckets < 2 * boxes.size()) buckets *= 2;
     double longest = 0;

@@ -12,8 +12,8 @@
 
 namespace embody::physics::deformable {
 
-/// Boxes of things of about the same size by the cells of a grid that they reach, cells by a hash (M. Teschner and
-/// others, "Optimized spatial hashing for collision detection of deformable objects", 2003).
+/// Boxes of about the same size by the cells of a grid that they reach, cells by a hash (M. Teschner and others,
+/// "Optimized spatial hashing for collision detection of deformable objects", 2003).
 class BoxGrid {
 public:
     /// `usual_size`: of a box, m, > 0. Cells grow with the longest box.
@@ -22,7 +22,7 @@ public:
     template <class Visit>
     void visit(const Bounds& box, Visit visit) const {
         const RoundedBox own = rounded(box);
-        // One that is far larger than the cells meets nearly all of them.
+        // A box that is far larger than the cells: it is tested against all boxes.
         const Cell low = cell_of(box.lower), high = cell_of(box.upper);
         const auto cells = [](int from, int to) { return static_cast<double>(to) - from + 1; };
         if (cells(low.x, high.x) * cells(low.y, high.y) * cells(low.z, high.z) > static_cast<double>(start_.size())) {

@@ -22,7 +22,7 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, con
         angular += cross(nodes.position[i] - center, nodes.mass[i] * nodes.mean_velocity[i] + given[i]);
     const Vec3 mean = momentum / mass, shift = (h / mass) * (momentum - moved), new_center = center + h * mean;
     for (Vec3& move : moves) move += shift;
-    // The turn changes the arms too, so it takes some rounds.
+    // The turn changes the arms, too, so it takes some iterations.
     for (int iteration = 0; iteration < settings.momentum_iterations; ++iteration) {
         Mat3 inertia = Mat3::zero();
         Vec3 missing = angular;

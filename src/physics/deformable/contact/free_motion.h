@@ -9,21 +9,21 @@
 
 namespace embody::physics::deformable {
 
-/// Of a deformable that nothing holds: changes `moves` (m, of a substep of h seconds) by a small move and turn of the
-/// whole, so that momentum and angular momentum are those before and what is `given` from outside (N s, by node).
+/// For a deformable that nothing holds: changes `moves` (m, of a substep of h seconds) by a small move and turn of the
+/// whole, so that momentum and angular momentum are those before plus what is `given` from outside (N s, by node).
 /// Elastic forces change neither; a solve that ended early does, and backward Euler slows turning.
 void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
                   std::span<Vec3> moves);
 
-/// That of all nodes, by their mass.
+/// Motion of all nodes, weighted by mass.
 struct WholeMotion {
     Vec3 velocity, spin;  ///< m/s, rad/s
 };
 [[nodiscard]] WholeMotion motion_of_whole(const Nodes& nodes);
 
-/// Sets the velocities after a substep of h seconds in which nodes have gone by `moves` (m): the mean ones, and at the
-/// end these and half of the last change of the whole's, which is exact for a free fall. Half of each node's own change
-/// would make what spins fast look faster than it is.
+/// Sets the velocities after a substep of h seconds in which nodes have moved by `moves` (m): the mean ones; those at
+/// the end are these plus half of the last change of the whole's velocity, which is exact for a free fall. Half of each
+/// node's own change would make a fast spin look faster than it is.
 void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h);
 
 }  // namespace embody::physics::deformable

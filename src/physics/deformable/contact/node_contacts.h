@@ -14,19 +14,19 @@ namespace embody::physics::deformable {
 struct NodeContact {
     std::uint32_t node = 0, body = 0;  ///< body: index in the list of bodies
     Vec3 anchor, normal;  ///< of the plane, from the centre of mass, when the step began; normal to the node
-    Vec3 velocity;        ///< of what touches it there, besides the body's own, m/s
+    Vec3 velocity;        ///< velocity of the surface besides the body's own, m/s
 };
 
-/// Appends, for every one of `candidates` that may come nearer than `radius` (m) to a body within `time_step` (s), the
+/// Appends, for every one of `candidates` that may come closer than `radius` (m) to a body within `time_step` (s), the
 /// nearest faces of that body as planes. `node_ball` is a sphere of that radius. Ordered by body, then as candidates.
 void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
                         double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
                         std::vector<NodeContact>& contacts, TaskPool& workers);
 
-/// How far a body's surface goes on its path within `time_step` (s), at most, m.
+/// Maximum travel of a body's surface on its path within `time_step` (s), m.
 double displacement_of(const TouchedBody& body, double time_step);
 
-/// How far the node's surface is off the plane (m; negative: in it) `time` (s) after the step began.
+/// Gap of the node's surface to the plane (m; negative: overlap) `time` (s) after the step began.
 double gap(const NodeContact& contact, Vec3 node_position, double radius, const TouchedBody& body, double time);
 
 }  // namespace embody::physics::deformable

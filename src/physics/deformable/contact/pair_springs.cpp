@@ -10,7 +10,7 @@ struct PairSprings::Found {
     ThinCandidate candidate;
     ThinPoints points;
     Vec3 normal;                          // from the second to the first
-    double distance = 0;                  // along it, m: below zero where the first has come to the other side
+    double distance = 0;                  // along the normal, m: below zero where the first has come to the other side
     const ThinContact* memory = nullptr;  // of forces
 
     [[nodiscard]] auto key() const { return std::tuple(candidate.kind, candidate.is_swapped, candidate.first); }
@@ -43,7 +43,7 @@ struct PairSprings::Search {
 bool PairSprings::Search::place(const ThinCandidate& candidate, Found& found) const {
     found = {.candidate = candidate, .points = {}, .normal = {}};
     if (!find_points(a.surface, b.surface, candidate, found.points)) return false;
-    constexpr double same_place = 1e-9;  // m: nearer ones have no direction
+    constexpr double same_place = 1e-9;  // m: features that are closer have no direction
     found.distance = length(found.points.away);
     if (found.distance > same_place)
         found.normal = found.points.away / found.distance;
@@ -63,7 +63,7 @@ Vec3 PairSprings::Search::side_of(const ThinCandidate& candidate) const {
     return normalized((candidate.is_swapped ? -1.0 : 1.0) * cross(x[q] - x[p], x[r] - x[p]), {0, 1, 0});
 }
 
-// Whether something on the wrong side has come through there: in a stack of one sheet's layers a node is above one and
+// Whether a feature on the wrong side has come through there: in a stack of one sheet's layers a node is above one and
 // below another.
 bool PairSprings::Search::is_next_to(const ThinContact& known, const ThinCandidate& candidate) const {
     if (&a != &b || known.kind != ThinFeature::node_on_triangle) return true;
@@ -73,7 +73,7 @@ bool PairSprings::Search::is_next_to(const ThinContact& known, const ThinCandida
     });
 }
 
-// A sheet has no inside: which side something is on is remembered.
+// A sheet has no inside: the side on which a feature is must be remembered.
 void PairSprings::Search::recall(Found& found) const {
     const ThinContactSettings& settings = start.settings;
     const auto is_before = [](const ThinContact& m, const auto& key) { return m.key() < key; };
@@ -96,7 +96,7 @@ void PairSprings::Search::recall(Found& found) const {
     if (most > settings.same_normal_cosine) found.memory = nearest;
 }
 
-// Whether it may touch within the substep: by its own speed and what gravity adds.
+// Whether it may touch within the substep: by its own speed and gravity.
 bool PairSprings::Search::is_near(const Found& found) const {
     Vec3 velocity;
     for (int k = 0; k < found.points.count; ++k) {
@@ -106,7 +106,7 @@ bool PairSprings::Search::is_near(const Found& found) const {
     return found.distance - radius < (length(velocity) + start.gravity * start.h) * start.h + radius;
 }
 
-// A node touches the nearest of the triangles, and of others those that lie in another direction.
+// A node touches the nearest of the triangles, and others in another direction.
 void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const {
     const double other_direction = start.settings.other_normal_cosine;
     std::vector<Found> near;
@@ -162,7 +162,8 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.gap = gap > 0 ? gap : std::max(settings.recovery_fraction * gap, -settings.recovery_speed * h);
     spring.friction = search.friction;
     if (found.memory != nullptr) {
-        // Layers that something holds in each other push no harder and harder: the deeper, the more they forget.
+        // Layers that something holds in each other must not push harder and harder: the deeper they are, the more
+        // force they forget.
         const double kept = is_self ? std::clamp(1 + gap / (settings.memory_depth * search.radius), 0.0, 1.0) : 1;
         spring.pull = kept * found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);

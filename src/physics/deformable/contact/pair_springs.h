@@ -11,13 +11,13 @@
 
 namespace embody::physics::deformable {
 
-/// What a contact of two sheets or ropes has left from the last substep.
+/// Memory of a contact of two sheets or ropes from the last substep.
 struct ThinContact {
     ThinFeature kind = ThinFeature::node_on_triangle;
     bool is_swapped = false;
     std::uint32_t first = 0, second = 0;
     Vec3 normal;      ///< from the second to the first
-    double push = 0;  ///< N, without what parts two that lie in each other
+    double push = 0;  ///< N, without the force that separates overlapping ones
     Vec3 hold;        ///< m
     bool sticks = true;
     double stiffness = 0;  ///< N/m
@@ -37,15 +37,15 @@ struct ThinMember {
     std::uint32_t first = 0;   ///< number of its first node among those of all
     std::vector<double> load;  ///< kg a node: of bodies that lie on it
 };
-/// Two of them, by index, the lower slot first, with what may touch; or a sheet with itself.
+/// Two members, by index, the lower slot first, with their candidates; or a sheet with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;
     std::vector<ThinCandidate> candidates;
 };
 
-/// Contacts between sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like
-/// those with bodies. Their forces are equal and opposite, so they leave the whole's momentum as it is.
+/// Contacts between sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like those
+/// with bodies. Their forces are equal and opposite, so they keep the total momentum.
 class PairSprings {
 public:
     struct Start {
@@ -70,7 +70,7 @@ private:
 
     Start start_;
     std::vector<TouchSpring> springs_;
-    std::vector<ThinContact> features_;                   // of the springs: what they are of, nothing of forces
+    std::vector<ThinContact> features_;                   // of the springs: only what they connect, without forces
     std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring
 };
 

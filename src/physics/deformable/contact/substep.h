@@ -8,11 +8,11 @@
 
 namespace embody::physics::deformable {
 
-/// What a deformable is told of one substep.
+/// Input of a deformable for one substep.
 struct Substep {
     double h = 1.0 / 60;                                    ///< its length, s
     double time = 0;                                        ///< of its start, s after the step began
-    Vec3 gravity;                                           ///< m/s², the deformable's own gravity factor in it
+    Vec3 gravity;                                           ///< m/s², with the deformable's own gravity factor
     Wind wind;                                              ///< of the air
     double air_density = 1.2;                               ///< kg/m³
     const SurfacePairs* surface_pairs = &no_surface_pairs;  ///< of the world

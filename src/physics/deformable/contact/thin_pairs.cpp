@@ -10,7 +10,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-// Features with the boxes that they go through.
+// Features with the boxes that they sweep.
 struct SweptFeatures {
     std::vector<std::uint32_t> feature;
     std::vector<Bounds> box;
@@ -19,7 +19,7 @@ struct SweptFeatures {
 
 class Sweep {
 public:
-    // `motion`: of the whole, left out: what goes together does not meet. `margin`: around each node, m.
+    // `motion`: of the whole, left out: features that move together do not meet. `margin`: around each node, m.
     Sweep(const ThinSurface& surface, Vec3 motion, double time_step, double margin) : surface_(surface) {
         const Nodes& nodes = *surface.nodes;
         boxes_.reserve(nodes.size());
@@ -101,7 +101,7 @@ void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double tim
     if (!a.triangles.empty())
         match(nodes_b, sweep_a.joined_in(a.triangles, region), ThinFeature::node_on_triangle, true, workers,
               candidates);
-    // On a sheet an edge is a triangle's.
+    // On a sheet an edge belongs to a triangle.
     if (b.triangles.empty()) match(nodes_a, edges_b, ThinFeature::node_on_edge, false, workers, candidates);
     if (a.triangles.empty()) match(nodes_b, edges_a, ThinFeature::node_on_edge, true, workers, candidates);
     match(edges_a, edges_b, ThinFeature::edge_on_edge, false, workers, candidates);

@@ -12,13 +12,13 @@
 
 namespace embody::physics::deformable {
 
-/// What another sheet or rope meets of one.
+/// Surface of a sheet or rope for contacts with another.
 struct ThinSurface {
     const Nodes* nodes = nullptr;
     std::span<const std::array<std::uint32_t, 3>> triangles;  ///< none of a rope
     std::span<const std::array<std::uint32_t, 2>>
         edges;               ///< of a rope: its segments, broken ones from a node to itself
-    double radius = 0;       ///< what it keeps off from its middle, m
+    double radius = 0;       ///< distance that it keeps from its middle, m
     double edge_length = 0;  ///< mean, m
 };
 
@@ -31,12 +31,12 @@ struct ThinCandidate {
     std::uint32_t first = 0, second = 0;  ///< node or edge of the one, triangle or edge of the other
 };
 
-/// Appends what of `a` and `b` may come nearer than their radii within `time_step` (s), while an acceleration of
-/// `gravity` (m/s²) may change how they go. In a fixed order for any number of workers.
+/// Appends features of `a` and `b` that may come closer than their radii within `time_step` (s), while an acceleration
+/// of `gravity` (m/s²) may change their velocities. In a fixed order for any number of workers.
 void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
                           TaskPool& workers, std::vector<ThinCandidate>& candidates);
 
-/// The nearest points of two features: Σ weight x is the way from the second to the first.
+/// The nearest points of two features: Σ weight x is the vector from the second to the first.
 struct ThinPoints {
     std::array<std::uint32_t, 4> node{};  ///< the first `count_first` of the first feature's surface
     std::array<double, 4> weight{};
@@ -47,7 +47,7 @@ struct ThinPoints {
 /// Of a candidate as its nodes lie now; nothing where the nearest points of two edges are at an end.
 bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points);
 
-/// Whether any of these is going to touch within `time_step` (s) as it goes, or nearly does.
+/// Whether any of these is going to touch within `time_step` (s) by its velocity, or nearly does.
 bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,
                 double gravity);
 

@@ -7,7 +7,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-// What the two ends are, as a spring: nodes and weights, without a stiffness.
+// The two ends as a spring: nodes and weights, without a stiffness.
 TouchSpring spring_of(const PlacedTie& placed) {
     const Tie& tie = *placed.tie;
     TouchSpring spring{.node = {placed.own_first + tie.node}, .weight = {1}, .is_attachment = true};

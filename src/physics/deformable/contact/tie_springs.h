@@ -10,19 +10,19 @@
 
 namespace embody::physics::deformable {
 
-/// A tie of a sheet or rope to another, as one solve sees both.
+/// A tie of a sheet or rope to another that is in the same solve.
 struct PlacedTie {
     const Nodes *own = nullptr, *other = nullptr;
     std::uint32_t own_first = 0, other_first = 0;  ///< number of the first node of each among those of all
     const Tie* tie = nullptr;
-    Vec3* pull = nullptr;  ///< what it had at the last substep's end, N, on its own node; takes the new one
+    Vec3* pull = nullptr;  ///< force at the last substep's end, N, on its own node; gets the new one
 };
 
-/// Ties as springs of two to four nodes with memory, as TouchSprings are, that pull in every direction. Their forces
-/// are equal and opposite.
+/// Ties as springs of two to four nodes with memory, like TouchSprings, but in every direction. Their forces are equal
+/// and opposite.
 class TieSprings {
 public:
-    /// Begins a substep of h seconds. `gravity`: m/s². What is apart is drawn together no faster than recovery_speed.
+    /// Begins a substep of h seconds. `gravity`: m/s². Separated ends are drawn together no faster than recovery_speed.
     void begin(std::span<const PlacedTie> ties, double h, double gravity, const ThinContactSettings& settings);
     /// Adds the forces of the springs to `given` (N), by node, and remembers.
     void finish(std::span<const Vec3> moves, std::span<Vec3> given);

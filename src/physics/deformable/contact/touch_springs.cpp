@@ -8,11 +8,11 @@ namespace embody::physics::deformable {
 
 namespace {
 
-// A new contact that is deeper than its point can have come in the substep began inside, or something was put there. It
-// is brought out at a bounded speed, by no more than the point's own inertia asks for: where the point is held inside
-// by something else, a force that is remembered would grow for ever. Nor by more than a few times what that of a light
-// body asks for: squeezed between points on both sides of it by all that a heavy rope can give, it turns out of there
-// faster than substeps can follow.
+// A new contact that is deeper than its point can have come in the substep began inside, or something was placed there.
+// It is brought out at a bounded speed, by a force that is at most what the point's own inertia needs: where something
+// else holds the point inside, a remembered force would grow for ever. The force is also at most a few times what a
+// light body's inertia needs: squeezed between points on both sides by all the force of a heavy rope, the body would
+// turn out of there faster than substeps can follow.
 void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h, const ThinContactSettings& settings) {
     spring.is_recovery = true;
     spring.friction = {};
@@ -24,10 +24,10 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h, cons
     spring.gap = -settings.recovery_speed * h - dot(spring.carried, spring.normal);
 }
 
-// Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
-// can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
-// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had. What
-// stuck in the last substep does so up to the static limit. Returns by how much the force is another than before, N.
+// Friction: k (hold + slip) up to its limit. Beyond it, the secant through that limit at the expected slip, which can
+// only stop sliding; where the slip is so long that friction cannot end it in this substep, the limit itself. The
+// expected slip of a sticking point is that of the point alone with the limit instead of the larger force that it had.
+// A point that stuck in the last substep sticks up to the static limit. Returns the change of the force, N.
 double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predicted) {
     constexpr double stuck_fraction = 0.99;  // of k times the stretch: below it the force was that of a secant
     double limit = spring.friction.coefficient(spring.sticks) * load;
@@ -58,9 +58,10 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange
     const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
     const bool is_new = !spring.acts;
     if (is_new != (push <= 0)) sum.change += std::fabs(push);
-    // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
+    // Only a solve releases a contact that pushed in the last substep: by the stiff spring every tiny move would be a
+    // separation.
     spring.acts = push > 0 || (is_predicted && push_before > 0);
-    // Of what does not touch, as much as it would take to bring it there alone.
+    // For a contact that does not touch: the force that would bring the point there alone.
     sum.near += spring.acts ? std::fabs(push) : std::min(std::fabs(push), spring.inertia * std::fabs(depth));
     if (!spring.acts) {
         spring.matrix = Mat3::zero();
@@ -68,7 +69,7 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange
         return;
     }
     sum.acting += std::fabs(push);
-    // How deep something came that was not held back tells what it takes to stop it, not what the spring would push.
+    // For a point that was not held back the depth determines the force that stops it, not the force of the spring.
     const double expected = is_predicted ? push_before : is_new ? push_before + spring.inertia * depth : push;
     sum.change += choose_friction(spring, s, expected, is_predicted);
     spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
@@ -92,7 +93,7 @@ std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double
     for (const TouchedBody& body : bodies) {
         BodyInertia inertia;
         if (body.inverse_mass > 0) {
-            // Axes that are held still turn a million times harder than the freest; where none turns, as a mass at a
+            // Fixed axes get a million times the inertia of the freest one; where none turns, that of a mass at a
             // million metres: both keep the inverse finite.
             constexpr double of_freest = 1e-6, of_inverse_mass = 1e-12;  // the latter in 1/m²
             const Mat3& inverse = body.inverse_inertia;
@@ -134,7 +135,7 @@ double energy_of(const BodyInertia& inertia, const BodyMove& move) {
 std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
                                  std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias,
                                  const Substep& substep) {
-    const double most = substep.settings.thin_contact.max_energy_ratio;  // times what the body's move takes
+    const double most = substep.settings.thin_contact.max_energy_ratio;  // times the energy of the body's move
     const double slow_push = substep.settings.thin_contact.free_push_speed, h = substep.h;
     std::vector<BodyMove> pushes(inertias.size());
     for (const TouchSpring& spring : springs) {
@@ -202,7 +203,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.arm = place.rotation * plane.anchor;
     const Vec3 offset = point - place.center - spring.arm;
     spring.gap = dot(offset, spring.normal) - radius;
-    // The point's own reach within the substep, and what gravity adds.
+    // The point's own travel within the substep, and that by gravity.
     const double reach = (length(velocity) + length(substep.gravity) * substep.h) * substep.h + radius;
     if (!is_free || spring.gap > reach) return;
     spring.arm += across(offset, spring.normal);
@@ -219,8 +220,8 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     springs_.push_back(spring);
 }
 
-// As between sheets (pair_springs.cpp): by inertia and by that of what weighs on it. That of a body would ask for
-// stiffer springs than these: with memory they would swing up, so they have none.
+// As between sheets (pair_springs.cpp): by its inertia and by that of the load on it. A body's inertia would need
+// stiffer springs than these: with memory their oscillations would grow, so they have no memory.
 void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) {
     const ThinContactSettings& settings = substep.settings.thin_contact;
     if (is_with_body) spring.pull = spring.hold = {};
@@ -249,7 +250,7 @@ void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::s
     complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
 }
 
-// Along its circle: what a straight way is off that, a stiff rope that sticks to a turning drum feels as a pull.
+// Along its circle: the error of a straight path would pull a stiff rope that sticks to a turning drum.
 TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Substep& substep) {
     const double end = substep.time + substep.h;
     Place place{body.center_at(end), body.rotation_at(end)};
@@ -280,10 +281,10 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
                            .body = b,
                            .is_attachment = true};
         spring.normal = {1, 0, 0};
-        // The anchor is in the frame that the body's pose at the step's start gives.
+        // The anchor is in the frame of the body's pose at the step's start.
         const Vec3 anchor = transform_point(body.start, attachment.anchor) - body.start_center;
         spring.arm = places_[b].rotation * anchor;
-        spring.carried = nodes.position[attachment.node] - places_[b].center - spring.arm;  // off the anchor
+        spring.carried = nodes.position[attachment.node] - places_[b].center - spring.arm;  // from the anchor
         spring.stiffness = settings.stiffness_factor * node_stiffness[attachment.node];
         recall(body, settings, spring);
         springs_.push_back(spring);
@@ -304,7 +305,7 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
     return sum.change > tolerance * sum.near;
 }
 
-// What has come in where no solve has seen a contact, since it was not worth another, is stopped on its own.
+// A point that has come in where no solve had a contact, since another solve was not made, is stopped alone.
 bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves) {
     if (spring.count != 1 || spring.is_attachment) return false;
     const Vec3 s = spring.lead(node_moves, body_moves), slip = across(s - spring.carried, spring.normal);

@@ -13,7 +13,7 @@
 
 namespace embody::physics::deformable {
 
-/// How far the pushes of a substep move a body off its path: m, rad.
+/// Displacement of a body off its path by the pushes of a substep: m, rad.
 struct BodyMove {
     Vec3 shift, turn;
 };
@@ -28,7 +28,7 @@ inline Vec3 unit_move(std::size_t c, Vec3 arm) {
 inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
 inline constexpr std::uint32_t no_node = 0xFFFFFFFFu;
 
-/// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
+/// Inertia of bodies within a substep of h seconds, for those that pushes move.
 struct BodyInertia {
     bool moves = false;
     double mass = 0;  ///< over the substep squared, kg/s²
@@ -43,8 +43,8 @@ struct SegmentContact {
     NodeContact plane;       ///< `node` does not count
 };
 
-/// What of a deformable touches, the same from substep to substep: a node and no_node, the two ends of an edge, or
-/// no_node and a number of what pokes into a triangle.
+/// Feature of a deformable that touches, the same from substep to substep: a node and no_node, the two ends of an edge,
+/// or no_node and the number of a body's feature that pokes into a triangle.
 using TouchFeature = std::array<std::uint32_t, 2>;
 
 /// A point of a sheet between two or three of its nodes, over a plane of a body.
@@ -58,22 +58,22 @@ struct SheetContact {
 
 /// What holds a point of a deformable, Σ weight x, off a plane or to an anchor of a body: the force
 ///   load - matrix s
-/// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
+/// on the point, where s is its displacement in the substep beyond that of the touched body by its pushes.
 struct TouchSpring {
     std::array<std::uint32_t, 4> node{};
     std::array<double, 4> weight{};
     int count = 1;                 ///< of nodes
-    TouchFeature feature{};        ///< with the body and about that direction, what is remembered
+    TouchFeature feature{};        ///< with the body: its anchor; about that direction: what is remembered
     std::uint32_t body = no_body;  ///< index in the list of bodies
     bool is_attachment = false;    ///< pulls too, in every direction
-    bool is_recovery = false;      ///< of a point that began inside: forgets its force
+    bool is_recovery = false;      ///< of a point that began inside: its force is forgotten
     Vec3 normal;                   ///< unit, towards the point, at the end of the substep
     Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
     PairFriction friction;         ///< of the two surfaces
     bool sticks = true;            ///< holds by static friction until its limit is left
     double gap = 0;                ///< at the end of the substep if the point stays, m
-    Vec3 carried;                  ///< how far the body's surface goes in the substep on its path, m
-    double stiffness = 0;          ///< of both directions at most, N/m
+    Vec3 carried;                  ///< displacement of the body's surface in the substep on its path, m
+    double stiffness = 0;          ///< maximum of both directions, N/m
     double inertia = 0;            ///< mass of the point over the substep squared, N/m
     Vec3 pull;                     ///< force that the spring had at the last substep's end, N: the push is along n
     Vec3 hold;                     ///< tangential stretch of the spring while it sticks, m
@@ -83,7 +83,7 @@ struct TouchSpring {
     Mat3 matrix = Mat3::zero();  ///< symmetric, not negative, N/m
     Vec3 load;
 
-    /// Of the point for that lead over the body.
+    /// Force on the point for that displacement relative to the body.
     [[nodiscard]] Vec3 force(Vec3 s) const { return load - matrix * s; }
     [[nodiscard]] Vec3 lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const;
 };
@@ -92,61 +92,62 @@ inline bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> b
     return spring.body != no_body && bodies[spring.body].moves;
 }
 
-/// What a solve minimises has of these: of a spring that acts, of a body's moves; J.
+/// Terms of the function that a solve minimises: of a spring that acts, of a body's moves; J.
 double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves);
 double energy_of(const BodyInertia& inertia, const BodyMove& move);
-/// The same of a spring whatever acted in the solve: of a contact, which only pushes, without friction.
+/// The same for a spring regardless of whether it acted in the solve: for a contact, which only pushes, without
+/// friction.
 double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
                       std::span<const BodyMove> body_moves);
 
-/// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
-/// has it in the substep, less where a solve that has not come to its end left stiff springs with far more.
+/// For each body, the fraction of the springs' push for these moves that it may get: 1 where the push moves it as in
+/// the solve, less where a solve that has not converged left stiff springs with far more.
 std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
                                  std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias,
                                  const Substep& substep);
 
-/// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
-/// would have: the finer and the coarser measure.
+/// Change of the contacts' forces, N, the forces of contacts that act, and the forces of all contacts that might act:
+/// the finer and the coarser measure.
 struct SpringChange {
     double change = 0, acting = 0, near = 0;
 };
-/// Whether a contact acts, and how its friction does, for that lead (m). `is_predicted`: of moves by inertia alone, no
-/// measure of forces: those of the last substep are.
+/// Determines whether a contact acts, and how its friction does, for that relative displacement (m). `is_predicted`:
+/// the moves are by inertia alone and no measure of forces; the forces of the last substep are.
 void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange& sum);
-/// After a substep: what is left of a tangential stretch (m) that the contact cannot hold with that push (N); notes
-/// whether it sticks. `h`: of the substep, s.
+/// After a substep: returns what is left of a tangential stretch (m) that the contact cannot hold with that push (N);
+/// stores whether it sticks. `h`: of the substep, s.
 Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
-/// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of what
-/// weighs on it, which `force` (N) tells, in a substep of h seconds. `gravity`: m/s².
+/// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of the
+/// load on it by `force` (N), in a substep of h seconds. `gravity`: m/s².
 double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings);
 /// The part of v along a plane.
 inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 
-/// Contacts and attachments of one deformable as springs with memory. A spring starts where it left off in the last
-/// substep, so its force grows until nothing gives way any more: stiff as it is, it acts like a hard contact (method of
-/// multipliers, one round a substep; stable from a stiffness of the node's own on). Friction is a spring along the
-/// plane that gives way at Coulomb's limit.
+/// Contacts and attachments of one deformable as springs with memory. A spring starts with its force of the last
+/// substep, so the force grows until the point no longer moves: with a finite stiffness it acts like a hard contact
+/// (method of multipliers, one iteration a substep; stable from the node's own stiffness on). Friction is a spring
+/// along the plane that slips at Coulomb's limit.
 class TouchSprings {
 public:
-    /// Begins a substep: `radius` and `material` of the deformable; `node_stiffness`: what the node's neighbours resist
-    /// with together, N/m. A contact counts that may close in the substep, but none of a node with what it is attached
-    /// to.
+    /// Begins a substep: `radius` and `material` of the deformable; `node_stiffness`: stiffness of the node's
+    /// neighbours together, N/m. Contacts that may close in the substep count, but none of a node with a body that it
+    /// is attached to.
     void begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                const Substep& substep, std::span<const double> node_stiffness);
-    /// After begin(): one of a point of a line.
+    /// After begin(): adds a contact of a point of a line.
     void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep, std::span<const double> node_stiffness);
-    /// After begin(): one of a point of a sheet. Softer than that of a node, as the solver knows each node's own part
-    /// of it only.
+    /// After begin(): adds a contact of a point of a sheet. It is softer than that of a node, as the solver includes
+    /// only each node's own part of it.
     void add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep);
-    /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
-    /// worth. `is_predicted`: as of choose_contact().
+    /// Determines which springs act, and how friction does, for these moves. True where that has changed enough for a
+    /// further solve. `is_predicted`: as of choose_contact().
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_predicted);
-    /// Goes on with what the contacts of another deformable of as many nodes felt last.
+    /// Continues with the last forces of the contacts of another deformable of as many nodes.
     void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
-    /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted. `shares`: as of
-    /// fractions_of(), or none.
+    /// Pushes the bodies, and stores forces and anchors. Changes moves of nodes that came in where no spring acted.
+    /// `shares`: as of fractions_of(), or none.
     void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
                 std::span<TouchedBody> bodies, std::span<const double> fractions = {});
 
@@ -154,8 +155,8 @@ public:
 
     double radius = 1e-3;                                       ///< m
     Material material;                                          ///< of the deformable's surface
-    double tolerance = ThinContactSettings{}.change_tolerance;  ///< share of the forces whose change is not worth a
-                                                                ///< solve, set before begin()
+    double tolerance = ThinContactSettings{}.change_tolerance;  ///< relative change of the forces that needs no solve,
+                                                                ///< set before begin()
     std::vector<Attachment> attachments;                        ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
@@ -171,11 +172,12 @@ private:
         Mat3 rotation;
         Vec3 displacement;             // of the centre in the substep, m
         Mat3 back = Mat3::identity();  // what turns directions of its end to those of its start
-        /// How far the point that is there then goes in the substep, m.
+        /// Displacement in the substep of the point that is there then, m.
         [[nodiscard]] Vec3 displacement_of(Vec3 arm) const { return displacement + arm - back * arm; }
     };
     static Place place_of(const TouchedBody& body, const Substep& substep);
-    // Of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by inertia and load.
+    // Sets the stiffness of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by
+    // inertia and load.
     void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
     static void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring);

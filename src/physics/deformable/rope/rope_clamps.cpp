@@ -134,7 +134,7 @@ void RopeClamps::find_spans(const Start& start, std::span<const Frame> at_start)
         if (same != memory_.end() && same->from_slot == from.slot && same->to_slot == to.slot) {
             span.straight = same->straight;
         } else {
-            // Held by others now, or by other axes: it goes on as far twisted as it is.
+            // Held by others now, or by other axes: it keeps its present twist.
             span.straight =
                 read_angle(from.clamp.node, to.clamp.node, at_start[i - 1], at_start[i], start.nodes.position) -
                 span.angle;
@@ -167,7 +167,7 @@ double RopeClamps::read_angle(std::size_t from_node, std::size_t to_node, const 
     return arc_tangent(dot(cross(side, to.side), to.axis), dot(side, to.side));
 }
 
-// Nearest to what it was, so full turns count.
+// Nearest to the last value, so full turns count.
 double RopeClamps::angle_of(const Span& span, std::span<const Vec3> places,
                             std::span<const BodyMove> body_moves) const {
     const Held &from = held_[span.from], &to = held_[span.to];

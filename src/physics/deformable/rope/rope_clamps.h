@@ -11,7 +11,7 @@ namespace embody::physics::deformable {
 /// (docs/physics/ropes.md).
 class RopeClamps {
 public:
-    /// What one substep begins with.
+    /// Input at the start of a substep.
     struct Start {
         const Rope& rope;
         std::span<const RopeSegment> segments;
@@ -22,7 +22,7 @@ public:
         const Substep& substep;
     };
 
-    /// Spans between clamps that were there already stay twisted as they are, others begin without.
+    /// Spans between clamps that were there already keep their twist, others begin without.
     void set(const std::vector<Clamp>& clamps);
     [[nodiscard]] const std::vector<Clamp>& clamps() const { return clamps_; }
     void begin(const Start& start);
@@ -30,15 +30,15 @@ public:
     [[nodiscard]] bool holds(std::size_t node) const;
     [[nodiscard]] bool has_twist() const { return !spans_.empty(); }
 
-    /// Into the system about these moves. `with_curvature`: how the moments press bent rope sideways too, which is
-    /// positive definite only as far as the rope bears them.
+    /// Adds to the system about these moves. `with_curvature`: also the sideways forces of the moments on bent rope,
+    /// which are positive definite only as long as the rope does not buckle.
     void add(std::span<const Vec3> places, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              bool with_curvature, RopeSystem& system) const;
-    /// Of the twists, as a solve has predicted them, N m.
+    /// Moments of the twists, as a solve has predicted them, N m.
     void predict(std::span<const double> moments);
     /// Elastic energy and damping, J.
     [[nodiscard]] double energy(std::span<const Vec3> places, std::span<const BodyMove> body_moves) const;
-    /// Pushes the bodies, and remembers.
+    /// Pushes the bodies, and stores the twists.
     void finish(std::span<const Vec3> places, std::span<const BodyMove> body_moves, double h,
                 std::span<TouchedBody> bodies);
 
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] double elastic_energy() const { return elastic_energy_; }
 
 private:
-    // A clamp that has what holds it.
+    // A clamp whose holder exists.
     struct Held {
         Clamp clamp;
         std::uint32_t body = no_body, slot = no_body;  // no_body: the world
@@ -63,10 +63,10 @@ private:
     struct Span {
         std::size_t from = 0, to = 0;       // indices of held_
         double stiffness = 0, damping = 0;  // GJ / L, N m/rad; the same of the change in the substep
-        double straight = 0;                // what the angle is read as without twist, rad
+        double straight = 0;                // the angle without twist, rad
         double angle = 0, moment = 0;       // when the substep began; as predicted, N m
     };
-    // What is kept of a span from substep to substep.
+    // Memory of a span from substep to substep.
     struct Memory {
         std::uint32_t from = 0, to = 0;            // nodes
         std::uint32_t from_slot = 0, to_slot = 0;  // of the bodies

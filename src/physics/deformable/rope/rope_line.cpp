@@ -67,8 +67,8 @@ RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positio
     return bend;
 }
 
-// EA times the strain; pressed harder than Euler's load π² EI / l² of a piece that long, it gives way sideways between
-// its nodes, and pushes with that load.
+// EA times the strain; compressed beyond Euler's load π² EI / l² of a piece that long, it buckles between its nodes and
+// pushes with that load.
 RopeLine::Tension RopeLine::tension_at(std::size_t segment, double now) const {
     const double rest = segments_[segment].length, slope = rope_.axial_stiffness / rest, longer = now - rest;
     const double buckling = pi * pi * rope_.bend_rigidity / (rest * rest);
@@ -77,7 +77,7 @@ RopeLine::Tension RopeLine::tension_at(std::size_t segment, double now) const {
     return {-buckling, 0, slope / 2 * until * until - buckling * (longer - until)};
 }
 
-// With what resists the change of its length in the substep.
+// With the damping of the change of its length in the substep.
 RopeLine::Tension RopeLine::damped_tension_at(std::size_t segment, double now, double h) const {
     Tension tension = tension_at(segment, now);
     const double damping = rope_.rayleigh_damping / h * rope_.axial_stiffness / segments_[segment].length;
@@ -96,8 +96,9 @@ void RopeLine::add_stretch(std::size_t segment, double h) {
     const double now = length(edge);
     const Tension tension = damped_tension_at(segment, now, h);
     const Vec3 displacement = normalized(edge, {1, 0, 0});
-    // (EA/l₀) t tᵀ + (T/l)(1 - t tᵀ); a pressed segment buckles, which is left to the forces. T is what the last round
-    // predicted, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
+    // (EA/l₀) t tᵀ + (T/l)(1 - t tᵀ); for a compressed segment, which buckles, the second term is left out. T is what
+    // the last iteration predicted, not that of its nodes' places: these have moved by d across, which lengthens the
+    // segment by d²/2l.
     const double across = std::max(pulls_[segment], 0.0) / std::max(now, min_length);
     const Mat3 stiffness = (tension.slope - across) * outer(displacement, displacement) + across * Mat3::identity();
     system_.band.add(a, a, stiffness);
@@ -186,7 +187,7 @@ void RopeLine::predict(const Substep& substep, std::span<const Vec3> from, std::
     }
 }
 
-// Goes from the moves towards those that the round found, as far as it pays.
+// Line search from the moves towards those that the iteration found.
 bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> inertias) {
     const std::vector<Vec3> from = moves_, full = next_moves_;
     const std::vector<BodyMove> body_from = body_moves_, body_full = next_body_moves_;
@@ -223,8 +224,8 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
     if (clamps_.holds_any()) clamps_.add(places_, moves_, body_moves_, with_curvature, system_);
 }
 
-// One linear solve with springs, touched bodies and twists. Past the moments that the bent rope bears, without how they
-// press it sideways: that is left to the forces.
+// One linear solve with springs, touched bodies and twists. Where the moments exceed what the bent rope bears, without
+// their sideways stiffness: only the forces have it.
 bool RopeLine::solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias) {
     next_body_moves_ = body_moves_;
     std::vector<TouchSpring> all;
@@ -251,13 +252,14 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
     TouchSprings chosen = springs_;
     chosen.choose(moves_, body_moves_, true);
-    // From rest or from inertia, whichever is nearer to the end: what begins no higher than rest gains no energy.
+    // Starts from rest or from inertia, whichever is closer to the solution: a start with no more energy than rest
+    // gains none.
     const std::vector<Vec3> rest(moves_.size());
     if (merit(substep, inertias, rest, body_moves_) < merit(substep, inertias, moves_, body_moves_)) {
         moves_ = rest;
         assemble(substep);
     }
-    // Of rounds that do not come to an end, those moves that leave the least.
+    // Of iterations that do not converge, the moves with the smallest residual.
     std::vector<Vec3> best_moves = moves_;
     std::vector<BodyMove> best_body_moves = body_moves_;
     double least = merit_pressed(substep, inertias);
@@ -287,7 +289,7 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     }
 }
 
-// At most one breaks a substep: what is left of the others' load goes with it.
+// At most one segment breaks a substep: that changes the load of the others.
 void RopeLine::break_segments() {
     std::uint32_t tightest = 0;
     for (std::uint32_t s = 0; s < segments_.size(); ++s) {
@@ -328,8 +330,8 @@ void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contac
 
 LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> moves) {
     moves_.assign(moves.begin(), moves.end());
-    assemble(substep, false);  // without what may not be positive
-    // Twists by the moments that the rope had on its own last.
+    assemble(substep, false);  // without terms that may not be positive
+    // Twists by the moments of the rope's last solve alone.
     for (std::size_t k = 0; k < system_.twists.size() && moments_.size() == system_.twists.size(); ++k) {
         for (std::size_t i = 0; i < system_.rhs.size(); ++i)
             system_.rhs[i] -= moments_[k] * system_.twists[k].by_node[i];

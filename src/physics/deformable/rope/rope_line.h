@@ -18,8 +18,8 @@ public:
     /// `definition` is valid and its matter is a rope.
     explicit RopeLine(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `held`: what else holds its nodes, by
-    /// springs that act and are to no body. Pushes the bodies.
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `held`: other springs on its nodes
+    /// that act and are to no body. Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
                  std::span<TouchedBody> bodies, std::span<const TouchSpring> held = {});
@@ -29,21 +29,22 @@ public:
     void begin(const Substep& substep, std::span<const NodeContact> contacts,
                std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
                std::span<const TouchedBody> bodies);
-    /// The equations about these moves, without springs; valid until the next call. Their answer are moves again.
+    /// The equations about these moves, without springs; valid until the next call. Their solution is moves again.
     LineSystem linearize(const Substep& substep, std::span<const Vec3> moves);
-    /// What the solve minimises of the rope alone, without springs and clamps, J.
+    /// The function that the solve minimises, for the rope alone, without springs and clamps, J.
     [[nodiscard]] double energy(const Substep& substep, std::span<const Vec3> moves) const;
-    /// What its segments pull with where the solve about the moves `from` goes to `to`: for the next linearize().
+    /// Sets the tensions of its segments for a solve about the moves `from` with the solution `to`: for the next
+    /// linearize().
     void predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
-    /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
-    /// Pushes the bodies; `shares` as of TouchSprings::finish().
+    /// Moves the nodes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or
+    /// one a node. Pushes the bodies; `shares` as of TouchSprings::finish().
     void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions);
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] bool has_clamps() const { return clamps_.holds_any(); }
-    /// Of the first at rest, m.
+    /// Length of the first segment at rest, m.
     [[nodiscard]] double segment_length() const { return segments_[0].length; }
-    /// How each node resists on its own, N/m, since begin().
+    /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Stops it for good where it is.
     void freeze();
@@ -53,28 +54,28 @@ public:
     void set_clamps(const std::vector<Clamp>& clamps) { clamps_.set(clamps); }
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
-    /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.
+    /// Tension of each segment, from node k to k + 1, N; below zero: compression. 0 where it is broken.
     [[nodiscard]] std::span<const double> tensions() const { return tensions_; }
     [[nodiscard]] bool is_broken(std::size_t segment) const { return segments_[segment].is_broken; }
-    /// What broke in the last substep.
+    /// Segments that broke in the last substep.
     struct Break {
         std::uint32_t segment = 0;
         double tension = 0;  ///< when it broke, N
     };
     [[nodiscard]] std::span<const Break> new_breaks() const { return new_breaks_; }
-    /// Between clamps that hold, in the last substep.
+    /// Twists between clamps that hold, in the last substep.
     [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
-    /// The same segments as of another rope of as many are broken, and it is twisted and touched as that one.
+    /// Takes over broken segments, twists and contacts from another rope of as many segments.
     void go_on_from(const RopeLine& other);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;
-    /// True once a number was none: it stays where it last was.
+    /// True once a number was non-finite: the rope stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
-    /// Rounds of Newton's method in the last substep.
+    /// Iterations of Newton's method in the last substep.
     [[nodiscard]] int iterations() const { return iterations_; }
 
 private:
-    // How the direction turns at a node, with its derivatives by the three nodes.
+    // Turn of the direction at a node, with its derivatives by the three nodes.
     struct Bend {
         bool is_whole = false;
         double stiffness = 0;  // EI / l, N m
@@ -91,7 +92,7 @@ private:
     void add_stretch(std::size_t segment, double h);
     void add_curvature(std::size_t node);
     bool solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias);
-    // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
+    // The function that the iteration's step minimises: inertia, elastic energy, damping and springs of these moves, J.
     using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
     [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
                                std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
@@ -121,10 +122,10 @@ private:
     std::vector<Vec3> small_load_;       // N
     std::vector<Bend> bends_;            // by node, when the substep began
     std::vector<double> start_lengths_;  // of segments, then, m
-    std::vector<double> pulls_;          // of segments, as the last round predicted them, N
+    std::vector<double> pulls_;          // of segments, as the last iteration predicted them, N
     std::vector<double> node_stiffness_;
     std::vector<BodyMove> body_moves_, next_body_moves_;
-    std::vector<double> moments_;  // of twists, as the last round predicted them, N m
+    std::vector<double> moments_;  // of twists, as the last iteration predicted them, N m
     bool is_frozen_ = false;
     int iterations_ = 0;
 };

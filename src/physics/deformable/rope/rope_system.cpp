@@ -63,7 +63,7 @@ void RopeSystem::add_springs(std::span<const TouchSpring> springs, std::span<con
     }
 }
 
-// Columns of what is between nodes and bodies, what the band makes of them, and the bodies' own block.
+// Columns of the coupling of nodes and bodies, the band's solutions for them, and the bodies' own block.
 void RopeSystem::make_border(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
                              const std::vector<bool>& fixed, std::vector<double>& load) {
     const std::size_t n = 6 * moving_.size();

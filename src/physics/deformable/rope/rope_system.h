@@ -11,7 +11,7 @@
 namespace embody::physics::deformable {
 
 /// A twist as a stiffness of rank one: its moment y (N m) pushes the unknowns with -y times the derivatives of the
-/// angle by them, and y = stiffness (offset + what the angle grows by with the unknowns).
+/// angle by them, and y = stiffness (offset + growth of the angle by the unknowns).
 struct TwistMode {
     double compliance = 1;      ///< 1 / stiffness, rad/(N m)
     double offset = 0;          ///< rad
@@ -20,7 +20,7 @@ struct TwistMode {
     std::array<Vec3, 2> by_turn;  ///< of these bodies
 };
 
-/// What couples a rope with a body that holds its direction: second derivatives of the energy by a node's place and the
+/// Coupling of a rope with a body that holds its direction: second derivatives of the energy by a node's place and the
 /// body's turn.
 struct TurnCoupling {
     std::uint32_t body = no_body, node = 0;
@@ -34,8 +34,8 @@ struct TurnStiffness {
     Vec3 load;       ///< N m
 };
 
-/// The linear system of one round of Newton's method of a rope: its nodes in a band; touched bodies, six unknowns each,
-/// and twists, one each, as the border.
+/// The linear system of one iteration of Newton's method of a rope: its nodes in a band; touched bodies, six unknowns
+/// each, and twists, one each, as the border.
 class RopeSystem {
 public:
     /// All zero.

@@ -19,7 +19,7 @@ EnclosedGas::EnclosedGas(double pressure, std::span<const std::array<std::uint32
     rest_volume_ = volume_;
 }
 
-// V = Σ a·(b × c)/6 over the faces, from a place among them so that little cancels.
+// V = Σ a·(b × c)/6 over the faces, from a place among them to avoid cancellation.
 void EnclosedGas::measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position,
                           double min_fraction) {
     slope_.assign(position.size(), {});

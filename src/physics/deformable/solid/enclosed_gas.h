@@ -12,8 +12,8 @@
 
 namespace embody::physics::deformable {
 
-/// Gas all through a closed surface, which spreads at once and keeps its temperature (Boyle's law). At rest its
-/// pressure and the tension of what encloses it are in balance: the thing is drawn as it is when blown up.
+/// Gas inside a closed surface, of uniform pressure and constant temperature (Boyle's law). At rest its pressure and
+/// the tension of what encloses it are in balance: the rest shape is the inflated one.
 class EnclosedGas {
 public:
     /// `surface` is counter-clockwise from outside; `pressure` above that of the air around, Pa, > 0.
@@ -25,11 +25,11 @@ public:
 
     /// ∂V/∂x of each node, m², of the last measure().
     [[nodiscard]] const std::vector<Vec3>& slope() const { return slope_; }
-    /// Pressure beyond that of the rest, Pa.
+    /// Pressure beyond that at rest, Pa.
     [[nodiscard]] double excess() const { return absolute_ * (rest_volume_ / volume_ - 1); }
     /// -∂p/∂V, Pa/m³.
     [[nodiscard]] double stiffness() const { return absolute_ * rest_volume_ / (volume_ * volume_); }
-    /// Work to bring it from its rest to a volume, with the air around and the tension at rest doing their share, J.
+    /// Work to bring it from rest to a volume, including that of the air around and of the tension at rest, J.
     [[nodiscard]] double energy() const;
 
 private:

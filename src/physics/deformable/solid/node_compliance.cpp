@@ -42,9 +42,9 @@ void NodeCompliance::keep_only_asked_for() {
         const std::uint32_t from = kept[i];
         nodes_[i] = nodes_[from];
         number_[nodes_[i]] = static_cast<std::uint32_t>(i);
-        if (from != i) columns_[i] = std::move(columns_[from]);  // moved onto itself a vector may become empty
+        if (from != i) columns_[i] = std::move(columns_[from]);  // moving a vector onto itself may empty it
         for (std::size_t row = 0; row < 9; ++row) {
-            // Never behind what is read next: i <= from, and so of each number within the row.
+            // Writes never reach what is read next: i <= from, also within a row.
             float* to = value_.data() + (9 * i + row) * stride_;
             const float* read = value_.data() + (9 * from + row) * stride_;
             for (std::size_t k = 0; k < kept.size(); ++k) to[k] = read[kept[k]];

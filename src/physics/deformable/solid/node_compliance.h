@@ -11,11 +11,11 @@ namespace embody::physics::deformable {
 /// its own axes. Kept from substep to substep, as long as the factor is, for the nodes that are touched again.
 class NodeCompliance {
 public:
-    /// For a factor that was replaced; so many nodes.
+    /// Resets for a new factor of a solid with this many nodes.
     void forget(std::size_t nodes);
-    /// Begins a substep: forgets nodes that were not asked for in the last one, where they are many.
+    /// Begins a substep: forgets nodes that were not used in the last one, where they are many.
     void begin();
-    /// Number of a node among the touched ones; a new one where it is asked for the first time.
+    /// Number of a node among the touched ones; a new one at the first query.
     std::uint32_t number_of(std::uint32_t node);
     /// Finds the blocks of nodes that are new. Pinned ones (`is_pinned` by node) do not move.
     void complete(const DissectedCholesky& factor, std::span<const std::uint8_t> is_pinned, TaskPool& workers);

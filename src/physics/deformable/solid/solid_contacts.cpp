@@ -63,7 +63,7 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
     }
 }
 
-// A group that is most of the work by all workers together, else each by one.
+// A group with more than half of the work is solved by all workers together, the others by one worker each.
 void SolidContacts::find_forces(double h, TaskPool& workers) {
     if (groups_.empty()) return;
     std::size_t first_parallel = 0;
@@ -122,10 +122,10 @@ void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody>
     std::ranges::stable_sort(groups_, std::greater{}, [](const Group& group) { return group.active.size(); });
 }
 
-// Sweeps find which contacts hold, stick and slide; the conjugate gradient solves for the forces of these at once
-// (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
-// helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
-// nonlinear conjugate gradient method for interactive contact force problems", 2010).
+// Sweeps find which contacts hold, stick and slide; the conjugate gradient solves for the forces of these at once (M.
+// Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that helps.
+// Where many contacts are nearly redundant, sweeps with conjugate directions go on (by the same, "A nonsmooth nonlinear
+// conjugate gradient method for interactive contact force problems", 2010).
 void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers) {
     const auto sweeps = [&] {
         double moved = 0;
@@ -175,7 +175,7 @@ void SolidContacts::lean_on(const Group& group, double factor, double h) {
     }
 }
 
-// Contacts that touch or nearly do after the free motion; others let go of their forces.
+// Contacts that touch or nearly do after the free motion; others lose their forces.
 void SolidContacts::gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                            double time) {
     active_.clear();
@@ -215,8 +215,8 @@ void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double
     active.shift = body.shift;
     active.turn = body.turn;
     if (contact.holds) {
-        // By the arm that the substep began with, which no push changes. What it was off then comes back no faster than
-        // overlaps do.
+        // With the arm at the substep's start, which no push changes. The error at that time is corrected no faster
+        // than overlaps are.
         active.arm = body.rotation_before(h, time) * contact.anchor;
         const Vec3 before = was - body.center_before(h, time) - active.arm;
         const double off = length(before), most = settings_.recovery_speed * h;
@@ -225,7 +225,7 @@ void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double
     }
     const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor;
     active.gap = dot(at - center - anchor, active.normal) - contact.radius;
-    // The body's surface under the point, and how far it has gone in the substep.
+    // The body's surface under the point, and its displacement in the substep.
     active.arm = at - (contact.radius + active.gap) * active.normal - center;
     active.slid = at - was - body.displacement(h, time, active.arm);
 }
@@ -254,7 +254,7 @@ void SolidContacts::find_compliance(Active& active, double h) const {
                                     arm * active.body->inverse_inertia * arm);
 }
 
-// How far the two have moved from each other by forces of this solve.
+// Relative displacement of the two by forces of this solve.
 Vec3 SolidContacts::moved(const Active& active) const {
     Vec3 sum;
     if (active.body != nullptr)
@@ -283,7 +283,7 @@ double SolidContacts::sweep(const Group& group, double h, bool forwards) {
     return moved;
 }
 
-// One contact to where it wants to be with the others as they are; returns how far it had to move.
+// Solves one contact with the others fixed; returns how far it had to move.
 double SolidContacts::relax(Active& active, double h) {
     const SolidContact& contact = *active.contact;
     const double softness = settings_.softness;
@@ -323,7 +323,7 @@ Vec3 SolidContacts::within_cone(Vec3 force, Vec3 normal, double friction) {
     return along * normal + (sideways > most ? (most / sideways) * across : across);
 }
 
-// By how much a contact gives way to a force beyond what bodies and solids do, m.
+// Displacement of a contact by a force beyond that of bodies and solids, m.
 Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) const {
     const double softness = settings_.softness;
     if (active.contact->holds) return softness * (active.compliance * force);
@@ -331,7 +331,7 @@ Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) const {
     return (softness * dot(n, active.compliance * n) * dot(force, n)) * n;
 }
 
-// For the next substep. Within one a contact has one limit: sweeps pass through forces that none would hold.
+// For the next substep. Within a substep a contact has one limit: sweeps pass through forces beyond any limit.
 void SolidContacts::note_sticking(const Active& active, double h) {
     const Vec3 slip = active.slid + moved(active);
     active.contact->sticks =

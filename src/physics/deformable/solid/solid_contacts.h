@@ -16,7 +16,7 @@ namespace embody::physics::deformable {
 ///
 ///   gap = gap of the free motion + W p >= 0,  p >= 0,  gap p = 0,    |p_t| <= μ p_n against the sliding,
 ///
-/// W what the solids' metrics say of the touched nodes, and the masses of the bodies (docs/physics/deformables.md).
+/// W by the solids' metrics at the touched nodes and the masses of the bodies (docs/physics/deformables.md).
 class SolidContacts {
 public:
     using Solids = std::span<SolidDeformable* const>;
@@ -52,16 +52,16 @@ private:
         std::size_t term_count = 0;
         TouchedBody* body = nullptr;     ///< none: between solids
         Vec3 normal, arm;                ///< arm: from the body's centre
-        double gap = 0, target = 0;      ///< of the free motion, and the least allowed, m
+        double gap = 0, target = 0;      ///< of the free motion, and the minimum allowed, m
         Vec3 slid;                       ///< relative motion in the substep, free, m
         Vec3 shift, turn;                ///< of the body when `gap` was taken
         Mat3 compliance = Mat3::zero();  ///< relative motion by a force on it, m/N
         State state = State::open;
-        Vec3 before, best;         ///< force before a sweep, and of the best round, N
+        Vec3 before, best;         ///< force before a sweep, and of the best iteration, N
         Vec3 direction;            ///< of sweeps with conjugate directions, N
         ContactGradient gradient;  ///< of the solve of all at once
     };
-    /// Contacts that have to do with each other, and solids and bodies that no other group moves.
+    /// Contacts that are coupled, with solids and bodies that no other group moves.
     struct Group {
         std::vector<Active*> active;
         std::vector<std::uint32_t> solids, bodies;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The forces of contacts that hold, stick and slide at once, as if they went on doing so: A x = r, A what forces on
-// contacts move them by. What a contact's state does not leave free is filtered out of z and r.
+// The forces of contacts that hold, stick and slide at once, as if they went on doing so: A x = r, A the displacements
+// of contacts by forces on them. Directions that a contact's state does not leave free are filtered out of z and r.
 #include "physics/deformable/solid/solid_contacts.h"
 #include "physics/linear/conjugate_gradient.h"
 
 namespace embody::physics::deformable {
 
-// What is left of the way to where the contact wants to be, in the directions that its force may change in.
+// The remaining error of the contact's displacement, in the directions in which its force may change.
 Vec3 SolidContacts::missing(const Active& active) const {
     const Vec3 n = active.normal, gone = moved(active) + soft_part(active, active.contact->force);
     const Vec3 relative = active.slid + gone, along = (active.target - active.gap - dot(n, gone)) * n;
@@ -24,7 +24,7 @@ Vec3 SolidContacts::missing(const Active& active) const {
 }
 
 void SolidContacts::find_state(Active& active) {
-    constexpr double rounding = 1e-6;  // of the limit: sweeps leave what slides that near to it
+    constexpr double rounding = 1e-6;  // of the limit: sweeps leave sliding contacts within this
     const SolidContact& contact = *active.contact;
     const double along = dot(contact.force, active.normal);
     const double across = length(contact.force - along * active.normal);
@@ -101,7 +101,7 @@ double SolidContacts::precondition(Active& active) {
     return dot(own.r, own.z);
 }
 
-// Then as far as each contact may.
+// Then projected onto each contact's limits.
 void SolidContacts::solve_together(const Group& group, double h, TaskPool& workers) {
     struct System {
         SolidContacts& of;

@@ -92,8 +92,8 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
     elements_.set(settings);
     h_ = h;
     gravity_ = gravity;
-    // The definition tells the velocity at the start, not the mean before it: half a substep of gravity and of the turn
-    // of the whole earlier.
+    // The definition has the velocity at the start, not the mean before it: that is half a substep of gravity and of
+    // the turn of the whole earlier.
     if (is_new_) {
         constexpr double min_spin = 1e-9;  // rad/s: keeps the quotient finite
         const WholeMotion whole = motion_of_whole(nodes_);
@@ -111,7 +111,7 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
         pushes_[i] = {};
         unsettled_[i] = {};
     }
-    kinetic_energy_at_start_ = kinetic_energy();  // the nodes have gone on by their velocities
+    kinetic_energy_at_start_ = kinetic_energy();  // the nodes have moved by their velocities
     if (is_new_) elastic_energy_.reset();
     energy_at_start_.reset();
     is_new_ = false;
@@ -134,7 +134,7 @@ void SolidDeformable::solve(TaskPool& workers) {
     press();
     find_gas_move(workers);
     quasi_newton_move(force_, move_, workers);
-    // The metric must not be softer than what it stands for along the move, or moves grow from substep to substep.
+    // The metric must not be softer along the move than the true stiffness, or moves grow from substep to substep.
     stretch_ = 1;
     const double max_ratio = settings_.max_stiffness_ratio;
     double ratio = stiffness_ratio();
@@ -160,7 +160,7 @@ void SolidDeformable::find_response(std::span<const Vec3> force, std::span<Vec3>
     for (Vec3& m : move) m = m / stretch_;
 }
 
-// The force of the gas on the nodes: what it presses more than at rest, along ∂V/∂x.
+// The force of the gas on the nodes: its pressure beyond that at rest, times ∂V/∂x.
 void SolidDeformable::press() {
     if (!gas_) return;
     gas_->measure(surface_, nodes_.position, settings_.min_gas_fraction);
@@ -195,7 +195,7 @@ void SolidDeformable::metric_move(std::span<const Vec3> force, std::span<Vec3> m
         move[i] = nodes_.inverse_mass[i] > 0 ? rotate(turn(i), to_vec3(turned_[i])) : Vec3{};
 }
 
-// dᵀ H d / dᵀ P d for the move d that the forces make.
+// dᵀ H d / dᵀ P d for the move d by the forces.
 double SolidDeformable::stiffness_ratio() {
     double metric = 0, true_one = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -262,7 +262,7 @@ double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
     return sum;
 }
 
-// Energy beyond what there was and what the pushes have done, J, with what was left of earlier substeps; none where all
+// Energy beyond the energy before and the work of the pushes, J, with the excess of earlier substeps; none where all
 // nodes are slow.
 std::optional<double> SolidDeformable::find_surplus() {
     is_measured_ = true;
@@ -282,13 +282,13 @@ std::optional<double> SolidDeformable::find_surplus() {
     return surplus_ + kinetic_energy() + *elastic_energy_ - *energy_at_start_ - work;
 }
 
-// What was too much before may only become less.
+// The excess of earlier substeps may only decrease.
 bool SolidDeformable::is_too_much(std::optional<double> surplus) const {
     return surplus && !(*surplus <= std::max(settings_.max_energy_gain * *energy_at_start_, surplus_));
 }
 
-// What further rounds leave is taken off: the move of the substep beyond that of the whole is made shorter, down to
-// none, which leaves the elastic energy that was there. Returns whether it was.
+// Removes the excess that further iterations leave: the move of the substep beyond that of the whole is made shorter,
+// down to zero, which keeps the elastic energy. Returns whether it was.
 bool SolidDeformable::keep_energy() {
     if (!is_measured_ && is_let_alone()) keep_momenta();
     std::optional<double> left = is_measured_ ? found_surplus_ : find_surplus();
@@ -311,7 +311,7 @@ bool SolidDeformable::keep_energy() {
     return is_shortened;
 }
 
-// That of the nodes in this substep, by mass.
+// Motion of the nodes in this substep, weighted by mass.
 SolidDeformable::RigidMove SolidDeformable::move_of_whole() const {
     RigidMove move;
     double mass = 0;
@@ -329,16 +329,16 @@ SolidDeformable::RigidMove SolidDeformable::move_of_whole() const {
         turning += nodes_.mass[i] * cross(arm, nodes_.position[i] - start_[i]);
         inertia += nodes_.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
     }
-    // Arms that turn by an angle go sideways by its sine.
+    // An arm that turns by an angle moves sideways by its sine.
     const Vec3 sideways = embody::solve(inertia, turning);
     const double sine = length(sideways);
     if (sine > 0) move.rotation = from_axis_angle(sideways / sine, std::asin(std::min(sine, 1.0)));
     return move;
 }
 
-// Inner forces neither move nor turn the whole, and outer ones turn it by their arms where the nodes come to. Rounding
-// and steps by rotations that lag do otherwise, and backward Euler slows every turn, as Σ m x × u changes with the arms
-// of the step's end; a small move and turn of the whole gives that back.
+// Inner forces neither move nor turn the whole, and outer ones turn it with the arms of the nodes' new places. Rounding
+// and rotations that lag violate that, and backward Euler slows every turn, as Σ m x × u changes with the arms of the
+// step's end; a small move and turn of the whole corrects this.
 void SolidDeformable::keep_momenta() {
     Vec3 center, new_center;
     double whole = 0;

@@ -15,7 +15,7 @@
 namespace embody::physics::deformable {
 
 /// A soft solid in motion (docs/physics/deformables.md). A substep is begin_substep(), push() with the contact forces
-/// that are guessed, solve(), what contacts make of it with push() and the compliance of nodes, and finish().
+/// that are guessed, solve(), the contacts' solve with push() and the compliance of nodes, and finish().
 class SolidDeformable {
 public:
     /// Of a valid definition whose matter is a SoftSolid.
@@ -34,31 +34,31 @@ public:
     void begin_substep(double h, Vec3 gravity, const SolidSettings& settings = {});
     /// Lets a force (N) act on a node for this substep; counts in the next solve() or settle().
     void push(std::uint32_t node, Vec3 force);
-    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of a
+    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one iteration of a
     /// quasi-Newton method.
     void solve(TaskPool& workers);
-    /// Moves the nodes by what the pushes since solve() do, as the compliance says.
+    /// Moves the nodes by the effect of the pushes since solve(), by the compliance.
     void settle(TaskPool& workers);
-    /// How the nodes would have moved by these forces (N) in this substep, had nothing else held them, m.
+    /// Displacement of the nodes by these forces (N) in this substep if nothing else held them, m.
     void find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
-    /// Whether the moves so far make energy, as one round does where nodes go a large part of the solid in a substep:
-    /// solve() again makes it less.
+    /// Whether the moves so far add energy, as one iteration does where nodes move by a large part of the solid's size
+    /// in a substep: a further solve() reduces it.
     [[nodiscard]] bool gains_energy();
-    /// Velocities of what the substep has come to.
+    /// Sets the velocities at the end of the substep.
     void finish();
-    /// After finish(): moves the nodes by what these forces (N) besides do in the substep.
+    /// After finish(): moves the nodes by the effect of these additional forces (N) in the substep.
     void go_on_with(std::span<const Vec3> force, TaskPool& workers);
 
     /// Where a node was when the substep began, m.
     [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
-    /// How touched nodes move by forces on each other in this substep, times stretch(): node i turns its move by its
-    /// turn(), j the force against its own.
+    /// Displacement of touched nodes by forces on each other in this substep, times stretch(): node i's displacement is
+    /// turned by its turn(), the force on node j by the inverse of its own.
     [[nodiscard]] NodeCompliance& compliance() { return compliance_; }
     void complete_compliance(TaskPool& workers) { compliance_.complete(factor_, is_pinned_, workers); }
-    /// The metric of this substep is so many times that of the factor.
+    /// Ratio of the metric of this substep to that of the factor.
     [[nodiscard]] double stretch() const { return stretch_; }
-    /// Of the gas within: forces f move the nodes by gas_fraction() g (g·f) less, g this, m/Pa, world axes; empty: no
-    /// gas.
+    /// The vector g of the gas within: forces f move the nodes by gas_fraction() g (g·f) less, m/Pa, world axes; empty:
+    /// no gas.
     [[nodiscard]] const std::vector<Vec3>& gas_move() const { return gas_move_; }
     [[nodiscard]] double gas_fraction() const { return gas_fraction_; }
     [[nodiscard]] Quat turn(std::size_t node) const {
@@ -69,11 +69,11 @@ public:
 
     /// Places its nodes and gives them these velocities; pinned ones rest. `rotation` is about that of the whole.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
-    /// Goes on as deformed for good as another of as many nodes and tetrahedra.
+    /// Takes over the plastic deformation of another solid of as many nodes and tetrahedra.
     void take_plastic_strain(const SolidDeformable& other) { elements_.take_plastic_strain(other.elements_); }
     /// Takes all velocities away.
     void rest();
-    /// Takes it back to where its nodes were, at rest.
+    /// Puts its nodes back to where they were, at rest.
     void stop_at(std::span<const Vec3> positions);
 
     [[nodiscard]] bool is_finite() const;

@@ -110,7 +110,7 @@ void SolidElements::add_stiffness_blocks(double factor, std::span<Mat3> diagonal
     }
 }
 
-// ∇ of what the nodes have, over an element: Σ value gᵀ.
+// ∇ of nodal values over an element: Σ value gᵀ.
 Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) const {
     const auto& corners = corners_[element];
     const Vec3 origin = values[corners[0]];
@@ -127,8 +127,8 @@ Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& p
     return turned_stress(r, strain, mu_, lambda_);
 }
 
-// Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count, as long as
-// the damping does not make much of it.
+// Rᵀ F at the start of a substep, before it turned to `rotation`. The square of small turns is negligible, as long as
+// the damping is not large.
 Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const {
     const double same = settings_.same_rotation_turn;  // of the quaternion: half the angle, rad
     const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};

@@ -17,10 +17,10 @@ namespace embody::physics::deformable {
 ///
 /// with F = Σ x gᵀ the deformation and R the rotation in it. Above the yield stress (von Mises) it flows: a plastic
 /// strain, taken off Rᵀ F - 1, follows at the end of each substep (flow()). Gas inside under pressure p pulls the
-/// matter taut, which resists a change of form by p/2 more in μ. A part of the volume is told by the tetrahedra, which
-/// alone bend too stiffly, the rest by the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
+/// matter taut, which resists a change of form by p/2 more in μ. A part of the volume has the F of the tetrahedra,
+/// which alone bend too stiffly, the rest the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
 /// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the change of Rᵀ F
-/// in the substep, which no turn makes.
+/// in the substep, which is zero for turns.
 class SolidElements {
 public:
     SolidElements(const SoftSolid& solid, std::span<const Vec3> rest);
@@ -42,18 +42,19 @@ public:
     /// Linearises at these positions (m), to which the nodes have come from `start` in h seconds: finds the rotations
     /// and adds elastic and damping forces, N.
     void linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h, std::span<Vec3> force);
-    /// Adds what K makes of a move: `factor` times the stiffness of the last linearise(), rotations going along.
+    /// Adds the product of K with a move: `factor` times the stiffness of the last linearise(), with the rotations'
+    /// change.
     void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
     /// The rotation around each node, of the last linearise().
     [[nodiscard]] const std::vector<Quat>& node_rotations() const { return node_rotation_; }
     /// Elastic energy at these positions, J.
     [[nodiscard]] double energy(std::span<const Vec3> position) const;
-    /// Lets what is stressed beyond its yield stress at these positions flow, with the rotations of the last
+    /// Plastic flow of what is stressed beyond its yield stress at these positions, with the rotations of the last
     /// linearise(). Returns whether there is a yield stress.
     bool flow(std::span<const Vec3> position);
-    /// Goes on with the plastic strain of another of as many nodes and tetrahedra.
+    /// Takes over the plastic strain of another solid of as many nodes and tetrahedra.
     void take_plastic_strain(const SolidElements& other);
-    /// Rotations for nodes that are somewhere else altogether.
+    /// Finds the rotations anew for nodes that were placed elsewhere.
     void reset_rotations(Quat rotation);
 
 private:

@@ -69,7 +69,7 @@ std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) co
         point = candidate;
     });
     if (triangle == nullptr) return std::nullopt;
-    constexpr double same_place = 1e-9;  // m: nearer ones have no direction
+    constexpr double same_place = 1e-9;  // m: points that are closer have no direction
     // Which side: by the normals of the corners around the point (J. Baerentzen, H. Aanaes, "Signed distance
     // computation using the angle weighted pseudonormal", 2005).
     Vec3 outwards;
@@ -84,8 +84,7 @@ std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) co
 template <class Visit>
 void PlacedSurface::visit_crossings(Vec3 p, int axis, Visit&& visit) const {
     const int across = (axis + 1) % 3, up = (axis + 2) % 3;
-    // A line through a node or along an edge would be counted twice or not at all: lines pass beside p by nearly
-    // nothing.
+    // A line through a node or along an edge would be counted twice or not at all: so lines pass p at a tiny distance.
     constexpr double beside = 1e-6;  // of a mean side: rounding leaves 1e-13
     const double aside = beside * deepest_, x = p[across] + 0.755 * aside, y = p[up] + 0.570 * aside;
     const auto side = [&](Vec3 a, Vec3 b) {
@@ -163,8 +162,8 @@ double volume(const Bounds& box) {
     return box.is_empty() ? 0 : size.x * size.y * size.z;
 }
 
-// Where much of one of the two lies within the other, as a scene may begin; or where any does and they have been
-// parting.
+// Where much of one of the two lies within the other, as a scene may begin; or where any does and they are already
+// being separated.
 std::optional<ExitDirection> find_exit_direction(const NumberedSolid& one, const NumberedSolid& two,
                                                  const PlacedSurface& surface_two, const SurfaceSearch& search) {
     const SolidContactSettings& settings = search.settings;
@@ -198,7 +197,7 @@ void find_surface_contacts(const NumberedSolid& one, const NumberedSolid& two, c
     for (const std::uint32_t node : nodes) {
         const Vec3 p = one.solid.nodes().position[node];
         auto place = surface.find(p, std::max(search.reach + search.radius, surface.deepest()));
-        // What is too deep to be told where it came from, or would be pushed deeper.
+        // Points that are too deep to find where they came from, or that would be pushed deeper.
         if (travel && (!place || travel->sign * place->normal[travel->axis] < 0))
             place = surface.find_exit(p, travel->axis, travel->sign);
         if (!place) continue;

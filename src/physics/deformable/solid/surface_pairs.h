@@ -12,12 +12,13 @@
 
 namespace embody::physics::deformable {
 
-/// The way on which one thing leaves another that it lies within.
+/// The displacement by which one solid leaves another that it lies within.
 struct ExitDirection {
     int axis = 0;
     double sign = 1;
 };
-/// The shortest on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
+/// The shortest displacement by which the box of `one` leaves that of `two`; of equal ones the first, upwards for the
+/// later solid.
 [[nodiscard]] ExitDirection min_travel(const Bounds& one, const Bounds& two, bool is_later);
 
 /// A solid's surface as it lies now.
@@ -38,15 +39,16 @@ public:
     [[nodiscard]] std::optional<Place> find_exit(Vec3 p, int axis, double sign) const;
     /// Whether p is inside.
     [[nodiscard]] bool encloses(Vec3 p) const;
-    /// How deep a point may be inside and still be told where it came from, m.
+    /// Maximum depth of a point inside at which it is known where it came from, m.
     [[nodiscard]] double deepest() const { return deepest_; }
-    /// Which share of so many points evenly chosen beneath this surface, by `depth` of the mean side, is inside of the
-    /// other.
+    /// Fraction of this many points, evenly chosen beneath this surface at `depth` over the mean side, that is inside
+    /// of the other.
     [[nodiscard]] double fraction_within(const PlacedSurface& other, double depth, std::size_t samples) const;
 
 private:
     [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }
-    /// Calls visit(triangle, weights of its corners, place along the axis) for all that the line along `axis` crosses.
+    /// Calls visit(triangle, weights of its corners, place along the axis) for all triangles that the line along `axis`
+    /// crosses.
     template <class Visit>
     void visit_crossings(Vec3 p, int axis, Visit&& visit) const;
     const SolidDeformable& solid_;
@@ -61,15 +63,15 @@ struct NumberedSolid {
     std::uint32_t number = 0;
 };
 struct SurfaceSearch {
-    double reach = 0;   ///< what the two may come closer in the step, m
+    double reach = 0;   ///< maximum approach of the two in the step, m
     double radius = 0;  ///< distance that they keep, m
     PairFriction friction;
-    bool is_parting = false;  ///< they were parted in the last step
+    bool is_parting = false;  ///< they were being separated in the last step
     SolidContactSettings settings = {};
 };
 /// Appends a contact for every surface node of `one` that may come to the surface of `two` within a step, with the
-/// nearest triangle there. Solids of which much lies within each other are parted along the axis on which their boxes
-/// overlap least.
+/// nearest triangle there. Solids of which much lies within each other are separated along the axis on which their
+/// boxes overlap least.
 void find_surface_contacts(const NumberedSolid& one, const NumberedSolid& two, const SurfaceSearch& search,
                            std::vector<SolidContact>& contacts);
 

@@ -33,8 +33,8 @@ void TouchedNodes::complete(SolidDeformable& solid, TaskPool& workers) {
     moved_.assign(3 * compliance_->stride(), 0.0f);
     for (auto* vectors : {&force_, &probe_force_, &probe_moves_}) vectors->assign(count, {});
     probe_own_force_.assign(3 * compliance_->stride(), 0.0f);
-    // As many parts whatever the number of workers: they decide in which order is added. Parts of a probe for workers;
-    // nodes from which on these pay.
+    // The number of parts does not depend on the number of workers: the parts determine the order of sums. Parts of a
+    // probe for workers; number of nodes from which on these pay.
     constexpr std::size_t max_parts = 4, min_parted_count = 8 * column_multiple;
     probe_part_moves_.resize(count < min_parted_count ? 1 : max_parts);
 }

@@ -9,32 +9,32 @@
 
 namespace embody::physics::deformable {
 
-/// The nodes of a solid that contacts act on in a substep, and how they move by forces on each other.
+/// The nodes of a solid that contacts act on in a substep, and their displacements by forces on each other.
 class TouchedNodes {
 public:
     void begin(SolidDeformable& solid);
     /// Its number among the touched nodes.
     std::uint32_t number_of(std::uint32_t node) { return compliance_->number_of(node); }
-    /// Finds the compliance of all that were asked for.
+    /// Finds the compliance of all nodes that were asked for.
     void complete(SolidDeformable& solid, TaskPool& workers);
 
     [[nodiscard]] std::size_t size() const { return force_.size(); }
     [[nodiscard]] std::uint32_t node(std::size_t number) const { return compliance_->node(number); }
-    /// Given since begin(), N.
+    /// Sum of the forces since begin(), N.
     [[nodiscard]] Vec3 force(std::size_t number) const { return force_[number]; }
     [[nodiscard]] bool is_pushed() const {
         return std::ranges::any_of(force_, [](Vec3 force) { return force != Vec3{}; });
     }
-    /// How node i moves by a force on node j, world axes, m/N; by numbers.
+    /// Displacement of node i by a force on node j, world axes, m/N; by numbers.
     [[nodiscard]] Mat3 block(std::size_t i, std::size_t j) const;
 
     /// A force (N) on a node, which moves all.
     void push(std::size_t number, Vec3 force);
-    /// By all forces so far, m.
+    /// Displacement by all forces so far, m.
     [[nodiscard]] Vec3 moved(std::size_t number) const { return move_of(number, moved_); }
 
-    // A set of forces that only tells what it would do: they are cleared and added, the probe begins, each of its parts
-    // is run, on any worker, and the probe ends.
+    // A set of forces for a trial: they are cleared and added, the probe begins, each of its parts is run, on any
+    // worker, and the probe ends.
     void clear_probe();
     void add_to_probe(std::size_t number, Vec3 force) { probe_force_[number] += force; }
     void begin_probe();
@@ -48,7 +48,7 @@ private:
 
     NodeCompliance* compliance_ = nullptr;
     double scale_ = 1;          // of the compliance
-    double gas_fraction_ = 0;   // what the gas takes away, see SolidDeformable::gas_move()
+    double gas_fraction_ = 0;   // displacement that the gas prevents, see SolidDeformable::gas_move()
     std::vector<float> gas_;    // in the nodes' own axes: rows x, y, z
     std::vector<Mat3> turn_;    // from the nodes' own axes
     std::vector<float> moved_;  // in the nodes' own axes, m: rows x, y, z
