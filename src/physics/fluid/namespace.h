@@ -6,10 +6,10 @@ namespace collision {}
 namespace linear {}
 }  // namespace embody::physics
 
-/// Liquids on a grid with particles: pressure, viscosity, surface tension, and the obstacles that bodies are to them.
+/// Liquids on a grid with particles: pressure, viscosity, surface tension, and bodies as their obstacles.
 namespace embody::physics::fluid {
 
-// The rooms that it may see (docs/architecture.md).
+// Namespaces that it may use (docs/architecture.md).
 using namespace collision;
 using namespace linear;
 

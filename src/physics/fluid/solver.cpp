@@ -16,7 +16,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// A gradient, 1/s, made no steeper than that: what is steeper no step of this length resolves.
+// A gradient, 1/s, made no steeper than that: a step of this length does not resolve steeper ones.
 void set_gradient(const float* gradient, float steepest, float* affine) {
     const float squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
     const float scale = squared > steepest * steepest ? steepest / std::sqrt(squared) : 1;
@@ -69,7 +69,7 @@ void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
         const Vec3 before{v[0], v[1], v[2]};
         Vec3 position = origin_ + Vec3{x[0], x[1], x[2]}, velocity = before;
         if (!change(particle.id, position, velocity)) return true;
-        // What is told to move otherwise no longer turns or stretches as it did.
+        // A particle whose velocity is changed from outside loses its affine motion.
         if (velocity != before) {
             for (auto& row : particle.affine) std::fill_n(row, 3, 0.0f);
         }
@@ -86,7 +86,7 @@ double FluidSolver::usual_speed(TaskPool& workers) const {
 }
 
 void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers) {
-    // A copy: whoever made them still knows them by their order.
+    // A copy: the caller still identifies the particles by their order.
     std::vector<FluidParticle> particles = particles_;
     grid_.cover(particles, settings_.cells, workers);
     if (particles.empty()) return;
@@ -113,7 +113,7 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
     obstacles_.end();
 
-    // Numbers that are none: no obstacle learns of them.
+    // Non-finite numbers: they must not reach any obstacle.
     for (const FluidObstacle& obstacle : obstacles) {
         outcome.is_finite = outcome.is_finite && is_finite(obstacle.impulse) && is_finite(obstacle.angular_impulse);
     }
@@ -193,7 +193,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
                         properties_.density * properties_.particle_volume, dt, moving);
     }
     project(dt, outcome, workers);
-    // Next to the liquid the air's faces go along with it; farther away drops fall freely.
+    // Next to the liquid the air's faces move with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
@@ -257,7 +257,8 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     });
 }
 
-// The pressure at the surface by its curvature. Where the parts of a step are too few, as much tension as they bear.
+// The pressure at the surface by its curvature. Where the parts of a step are too few, the tension is the largest that
+// is stable.
 void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
     const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
     surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
@@ -292,7 +293,7 @@ void FluidSolver::spread_out(TaskPool& workers) {
         const auto cell = static_cast<int>(system_.cell(row));
         double error = std::clamp<double>(grid_.density[cell] - grid_.room[cell], -most, most);
         for (int axis = 0; axis < 3 && error < 0; ++axis) {
-            // Near the surface there may be less.
+            // Next to the surface the density may be less.
             const int stride = grid_.stride(axis);
             if (grid_.open[axis][cell] > 0 && grid_.row[cell - stride] < 0) error = 0;
             if (grid_.open[axis][cell + stride] > 0 && grid_.row[cell + stride] < 0) error = 0;
@@ -322,7 +323,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
             float shift[3], end[3];
             sample_value(grid_, grid_.shift, places_[i].data(), shift);
             if (is_tense_) surface_.draw_in(grid_, places_[i].data(), shift);
-            // A drop reads back what it wrote: a gradient that it took along would stay for ever.
+            // A drop reads back what it wrote: a gradient that it carried would stay for ever.
             const bool is_single = is_drop(grid_, places_[i].data());
             const float steepest = is_single ? 0 : 1 / time;
             if (is_single) slow_at_wall(around, places_[i].data(), sample.value);
@@ -341,7 +342,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
     });
 }
 
-// Drops away from all liquid, by themselves: only walls that do not move are near.
+// Drops away from all liquid: only walls that do not move are within reach.
 void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
     const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
     const DropSurroundings around{grid_, obstacles_, properties_, settings_.drops, dt};

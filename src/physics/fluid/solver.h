@@ -25,7 +25,7 @@ struct FluidProperties {
     double surface_tension = 0;  ///< N/m
 };
 
-/// What a step of a fluid came to.
+/// Result of a step of a fluid.
 struct FluidOutcome {
     int parts = 0;                                          ///< the step was solved in
     int pressure_iterations = 0, viscosity_iterations = 0;  ///< over all parts
@@ -43,15 +43,14 @@ public:
     FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties, std::span<const Vec3f> positions,
                 Vec3 velocity);
 
-    /// The numbers that steer what follows; whoever calls it sets them in each step.
+    /// The numbers that steer the next calls; the caller sets them in each step.
     void set_settings(const FluidSettings& settings) { settings_ = settings; }
-    /// Gets the grid and the static obstacles on it ready for the first step.
+    /// Prepares the grid and the static obstacles on it for the first step.
     void prepare(std::span<FluidObstacle> obstacles, TaskPool& workers);
     /// Advances by dt; the obstacles' impulses are set.
     FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers);
 
-    /// After a step: the obstacles are where they came to by what they met, and the particles are kept out of them
-    /// there.
+    /// After a step: moves the obstacles to their places after contacts and keeps the particles out of them there.
     struct Followed {
         bool is_solved = true;
         std::size_t lost = 0;  ///< particles out of reach
@@ -62,7 +61,7 @@ public:
     [[nodiscard]] const FluidProperties& properties() const { return properties_; }
     [[nodiscard]] const FluidGrid& grid() const { return grid_; }
     [[nodiscard]] const std::vector<FluidParticle>& particles() const { return particles_; }
-    /// Of particles as large.
+    /// For particles of the same size.
     void set_matter(const FluidProperties& matter) {
         const double volume = properties_.particle_volume;
         properties_ = matter;
@@ -72,17 +71,17 @@ public:
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
     /// The speed that all but a few drops stay below, m/s; there is liquid.
     [[nodiscard]] double usual_speed(TaskPool& workers) const;
-    /// At rest; their ids follow those that were ever given.
+    /// Adds particles at rest; their ids follow all earlier ones.
     FluidIds add_particles(std::span<const Vec3f> positions);
-    /// Takes those with these ids out, in their order.
+    /// Removes the particles with these ids; returns them in the order of the ids.
     std::vector<FluidParticle> take_particles(FluidIds ids);
-    /// As they are, from a frame of world axes at `origin`; their ids follow those that were ever given.
+    /// Adds particles as they are, from a frame of world axes at `origin`; their ids follow all earlier ones.
     FluidIds add_particles(std::vector<FluidParticle> particles, Vec3 origin);
-    /// Those with these ids as `change` says, in world coordinates.
+    /// Changes the particles with these ids by `change`, in world coordinates.
     void change_particles(FluidIds ids, const FluidChange& change);
     /// Stops all motion.
     void stop();
-    /// The particles are at these places, and stand.
+    /// Puts the particles at these places, at rest.
     void put_at_rest(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids);
     /// Pressure at a place of the fluid's frame, Pa; 0 outside the liquid.
     [[nodiscard]] double pressure_at(Vec3 p) const;
@@ -114,7 +113,7 @@ private:
     FreeComponents components_;
     std::vector<FluidParticle> particles_;
     std::uint32_t next_id_ = 0;
-    std::vector<std::array<float, 3>> places_;  // where they meet the grid
+    std::vector<std::array<float, 3>> places_;  // places at which they meet the grid
     std::vector<double> flow_, impulse_, potential_;
     double speed_ = 0;       // usual one when the step began, m/s
     bool is_tense_ = false;  // its surface has tension in this step

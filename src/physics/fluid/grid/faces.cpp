@@ -40,7 +40,7 @@ void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>,
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<std::uint8_t>& known = grid.known[axis];
         grid.for_rows(corner, [&](int first, const Cell&) {
-            // Most rows are wholly known or far from all that is.
+            // Most rows are wholly known or far from all known faces.
             const std::uint64_t own = row_of(known, first);
             if (own == all) return;
             const std::uint64_t beside = row_of(known, first - dy) | row_of(known, first + dy) |
@@ -83,7 +83,7 @@ float followed(const FluidGrid& grid, const FluidObstacles& obstacles, double st
     if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
     const double slides = sticking < 1 ? sliding(grid, axis, cell, center, wall) : 0;
 
-    // Straight from the velocity one face farther out, through the obstacle's at its surface.
+    // Linear extrapolation from the velocity one face farther out through the obstacle's at its surface.
     const double inside = std::clamp(-0.5 * (grid.obstacle[cell] + grid.obstacle[below]), 0.0, 0.5);
     const double sticks = wall[axis] - (grid.velocity[axis][cell] - wall[axis]) * inside / (1 - inside);
     return static_cast<float>(slides + (sticks - slides) * sticking);

@@ -10,25 +10,25 @@
 
 namespace embody::physics::fluid {
 
-/// Gives faces without a velocity the mean of their neighbours', `layers` faces far from those that are known.
+/// Sets faces without a velocity to the mean of their neighbours', in `layers` layers around the known faces.
 void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers);
 
-/// Faces that particles reach but that are unknown are known by them.
+/// Unknown faces that particles reach take the particles' velocity.
 void admit_drops(FluidGrid& grid, TaskPool& workers);
 
 /// Velocity at a face; the components across are means of the four nearest faces, m/s.
 Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 
-/// Shut faces move as the obstacle does: along its normal, or wholly where the obstacle is thin. As far as the liquid
-/// sticks (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is
-/// the obstacle's.
+/// Shut faces move as the obstacle does: along its normal, or wholly where the obstacle is thin. To the degree that the
+/// liquid sticks (1: its layer at the wall is thicker than a cell, 0: much thinner) they are set such that the velocity
+/// at the surface is the obstacle's.
 void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers);
 
 /// Volume that flows out of each liquid cell by faces and surfaces of obstacles, m³/s.
 void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
              std::vector<double>& flow, TaskPool& workers);
 
-/// Adds to the right hand side of the pressure's equation what the pressure at the surface does.
+/// Adds the effect of the pressure at the surface to the right hand side of the pressure's equation.
 void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
                           std::vector<double>& b, TaskPool& workers);
 
@@ -40,8 +40,8 @@ struct PressureGradient {
     double scale = 1;
 };
 
-/// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the way to the neighbour or the surface, in
-/// cells). Other faces become unknown.
+/// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the distance to the neighbour or the
+/// surface, in cells). Other faces become unknown.
 void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
                        TaskPool& workers);
 

@@ -12,7 +12,7 @@ namespace {
 struct CellRange {
     Cell lower{}, upper{};
 
-    // Of a box around it with the tiles that it needs beside it.
+    // Size of a box around it with the tiles that it needs beside it.
     [[nodiscard]] double cells_of_box() const {
         double cells = 1;
         for (int axis = 0; axis < 3; ++axis) cells *= upper[axis] - lower[axis] + 5.0 * FluidGrid::tile[axis];
@@ -59,7 +59,7 @@ struct Box {
     Cell lower, size;
 };
 
-// What an array of an element a cell of one box becomes in another box; `none` where there was nothing.
+// Converts an array with an element for each cell of one box to another box; new cells get `none`.
 template <class T>
 void carry_over(std::vector<T>& array, const Box& from, const Box& to, T none = {}) {
     std::vector<T> old(static_cast<std::size_t>(to.size[0]) * static_cast<std::size_t>(to.size[1]) *
@@ -112,7 +112,7 @@ std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles, const FluidC
         fits = fits && low[axis] >= lower_[axis] && high[axis] <= lower_[axis] + size_[axis];
     }
     if (!fits) {
-        // A quarter more where it grows: it will go on.
+        // A quarter more where it grows: it will grow further.
         for (int axis = 0; axis < 3; ++axis) {
             const int more = floor_to((high[axis] - low[axis]) / 4, tile[axis]);
             if (size_[0] > 0 && low[axis] < lower_[axis]) low[axis] -= more;
@@ -147,7 +147,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     wet_cells_.assign(tiles, 0);
     active_.clear();
 
-    // The last pressure is the next solve's guess; static obstacles stand where they stood.
+    // The last pressure is the next solve's guess; static obstacles stay where they were.
     const auto box_of = [](const Cell& low, const Cell& whole, const Cell& unit) {
         Box box;
         for (int axis = 0; axis < 3; ++axis) {
@@ -171,7 +171,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
 
 void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
                      const FluidCellSettings& settings, TaskPool& workers) {
-    // Which cell each is in, and which tiles that makes active.
+    // The cell of each particle, and which tiles become active by it.
     const std::size_t count = particles.size();
     cell_of_.resize(count);
     tile_of_particle_.resize(count);
@@ -186,8 +186,8 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::s
     });
     mark_tiles(particles, volume, near, settings);
 
-    // Counting sort, stable, tile by tile, drops after all others. Places first: to move the particles takes longest
-    // and can be shared.
+    // Counting sort, stable, tile by tile, drops after all others. Places first: moving the particles takes longest and
+    // can run on all workers.
     for (const Cell& corner : active_) {
         for_rows(corner, [&](int first, const Cell&) { std::fill_n(particle_count.begin() + first, tile[0], 0u); });
     }

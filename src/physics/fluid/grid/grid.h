@@ -25,13 +25,13 @@ enum TileMark : std::uint8_t {
     tile_around_drops = 8,  ///< has particles that do not meet the grid, or is next to such a tile
 };
 
-/// The staggered (MAC) grid of a fluid: a box of cells around its particles, of which only the tiles near particles
+/// The staggered (MAC) grid of a fluid: a box of cells around its particles, of which only the tiles around particles
 /// are ever touched. Cell (x, y, z) counts from the box's lowest; face `axis` of a cell is its lower one. Every array
 /// has an element for each cell of the box.
 class FluidGrid {
 public:
     static constexpr Cell tile{8, 4, 4};  ///< cells; active tiles are those with particles and all around them
-    /// Cells: obstacles that are farther away are not told apart.
+    /// Cells: maximum of the distance of obstacles that is stored.
     static constexpr int obstacle_reach = 2;
 
     explicit FluidGrid(double cell_size) : cell_(cell_size), per_cell_(static_cast<float>(1 / cell_size)) {}
@@ -42,7 +42,7 @@ public:
     /// fluid's frame in which even drops meet the grid.
     void sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
               const FluidCellSettings& settings, TaskPool& workers);
-    /// How many particles meet the grid, the first ones; those after them are drops that fly by themselves.
+    /// Number of particles that meet the grid: they come first; those after them are drops that fly by themselves.
     [[nodiscard]] std::size_t on_grid() const { return on_grid_; }
 
     [[nodiscard]] double cell_size() const { return cell_; }
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] std::span<const Cell> left() const { return left_; }
     /// Of tiles around drops that fly by themselves, whose static obstacles are not known yet.
     [[nodiscard]] std::span<const Cell> unknown_around_drops() const { return unknown_; }
-    /// Makes a tile what it is where there is neither liquid nor any moving obstacle. Inactive tiles are so.
+    /// Sets a tile to the state without liquid and moving obstacles. Inactive tiles have that state.
     void clear_tile(const Cell& corner);
 
     /// Calls visit(index of the row's first cell, its cell) for each row of eight cells of a tile.
@@ -92,7 +92,7 @@ public:
             for (int i = 0; i < tile[0]; ++i, ++c[0]) visit(first + i, c);
         });
     }
-    /// Calls work(corner) for each active tile, shared among the workers; `work` may write to its own tile only.
+    /// Calls work(corner) for each active tile, on all workers; `work` may write to its own tile only.
     template <class Work>
     void for_tiles(TaskPool& workers, Work work) const {
         parallel_for(workers, active_.size(), active_.size() > 16, [&](int, IndexRange range) {
@@ -103,13 +103,13 @@ public:
     // Written by the stages of FluidSolver::advance; their units and meaning: docs/physics/fluids.md.
     std::array<std::vector<float>, 3> velocity;      ///< of faces, m/s
     std::array<std::vector<float>, 3> mass;          ///< of particles at faces, in particles
-    std::array<std::vector<float>, 3> open;          ///< share of a face's control volume outside obstacles
-    std::array<std::vector<std::uint8_t>, 3> known;  ///< faces whose velocity is one
+    std::array<std::vector<float>, 3> open;          ///< fraction of a face's control volume outside obstacles
+    std::array<std::vector<std::uint8_t>, 3> known;  ///< faces whose velocity is known
     std::vector<float> density;                      ///< particles around a centre, in volumes of the cell
     std::vector<float> surface;                      ///< signed distance to the liquid's surface, in cells, < 0 inside
     std::vector<float> obstacle;                     ///< signed distance to the nearest obstacle, in cells, within ±2
     std::vector<std::int16_t> obstacle_owner;        ///< which of the moving obstacles is nearest; -1: a static one
-    std::vector<float> room;                         ///< share of the density's kernel outside obstacles
+    std::vector<float> room;                         ///< fraction of the density's kernel outside obstacles
     std::vector<std::uint8_t> thin;                  ///< bits of ThinMark
     std::vector<std::int32_t> row;                   ///< of the pressure's system; -1: not liquid
     std::vector<float> pressure;                     ///< of the last step, Pa
@@ -138,7 +138,7 @@ private:
     Cell lower_{}, size_{}, tiles_{};
     std::vector<std::uint8_t> tile_state_;   // bits of TileMark
     std::vector<std::uint32_t> tile_count_;  // particles in it
-    std::vector<int> wet_cells_;             // in it, of those that few particles fill
+    std::vector<int> wet_cells_;             // in it, of those cells that few particles fill
     std::vector<Cell> active_, left_, unknown_;
     std::array<std::vector<std::uint32_t>, colors> colored_;
     std::vector<std::uint32_t> cell_of_, tile_of_particle_;  // of each particle; then the place it is sorted to

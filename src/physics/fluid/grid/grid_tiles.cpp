@@ -36,7 +36,7 @@ struct Centers {
 
 }  // namespace
 
-// Of a tile that is not at the box's rim, as none is that has particles or is next to one that has.
+// Neighbours of a tile that is not at the box's rim; no tile with particles or next to one with particles is.
 template <class Visit>
 void FluidGrid::for_tiles_around(int place, Visit visit) const {
     for (int k = 0; k < 27; ++k) {
@@ -44,8 +44,8 @@ void FluidGrid::for_tiles_around(int place, Visit visit) const {
     }
 }
 
-// Where liquid may be: where many particles are, near moving obstacles and where nothing is known of the static ones,
-// and around each cell that the particles of the other tiles fill so far.
+// Tiles where liquid may be: with many particles, next to moving obstacles, where nothing is known of the static ones,
+// and around each cell that the particles of the other tiles fill far enough.
 void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
                                const FluidCellSettings& settings) {
     const std::uint32_t full_tile = settings.full_tile_particles;

@@ -8,13 +8,13 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// How far the surface lies above a centre, in cells, if the half space below it fills this share of the tent kernel.
+// Height of the surface above a centre, in cells, if the half space below it fills this fraction of the tent kernel.
 float height_of_surface(float filled) {
     if (filled <= 0.5f) return std::sqrt(2 * std::max(filled, 0.0f)) - 1;
     return 1 - std::sqrt(2 * std::max(1 - filled, 0.0f));
 }
 
-// Depth of the surface over the centre of a hole in the liquid, cells: liquid, and by no more than that.
+// Depth of the surface over the centre of a hole in the liquid, cells: the hole just counts as liquid.
 constexpr float hole_depth = 0.05f;
 
 struct MarkedCell {
@@ -29,7 +29,7 @@ struct Neighbourhood {
     bool are_narrow_told;
 };
 
-// What the open neighbours make of a cell that is not liquid by itself.
+// Surface that the open neighbours imply for a cell that is not liquid by itself.
 void look_around(const Neighbourhood& around, int cell, std::vector<MarkedCell>& marked) {
     const FluidGrid& grid = around.grid;
     const float min_room = around.min_room;
@@ -59,7 +59,8 @@ void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
     for (const MarkedCell& cell : marked) grid.surface[cell.cell] = cell.surface;
 }
 
-// Narrow cells are liquid beside liquid, those in corners beside such ones; holes with liquid all around are none.
+// Narrow cells are liquid beside liquid, those in corners beside such narrow cells; holes with liquid all around are
+// filled.
 void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
     struct Found {

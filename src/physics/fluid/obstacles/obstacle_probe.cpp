@@ -11,15 +11,15 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// How far a point is outside of a box along the worst axis: at most its distance.
+// Distance of a point from a box along the axis where it is largest: a lower bound of its distance.
 double outside_of(const Bounds& box, Vec3 p) {
     const Vec3 out = max(box.lower - p, p - box.upper);
     return std::max({out.x, out.y, out.z});
 }
 
 // Half-space distances of a convex at a point: the largest, and the largest of those whose faces are turned away from
-// its face by more than this cosine tells: facets of a round thing (32 a turn: 0.98) count as one face, corners of 45°
-// (0.71) and more do not.
+// its face by more than this cosine: facets of a round thing (32 a turn: 0.98) count as one face, corners of 45° (0.71)
+// and more do not.
 constexpr double turned_away = 0.8;
 struct TwoFaces {
     ObstacleDistance first{-1e300, {}}, second{-1e300, {}};
@@ -82,7 +82,7 @@ struct FacesOfCube {
             faces[count++] = &face;
         }
     }
-    /// Of those, as faces_near; wholly inside where there are none.
+    /// Distances of those faces, as faces_near; wholly inside where there are none.
     [[nodiscard]] TwoFaces at(Vec3 p) const {
         if (convex.kind != ConvexKind::polytope || count == max_faces) return faces_near(convex, p);
         TwoFaces two;
@@ -90,7 +90,7 @@ struct FacesOfCube {
         return two;
     }
 
-    static constexpr int max_faces = 12;                // capacity: with more the convex is asked
+    static constexpr int max_faces = 12;                // capacity: with more faces the convex is queried
     static constexpr double half_diagonal = 0.8660254;  // √3 / 2
     const Convex& convex;
     const Polytope::Face* faces[max_faces] = {};
@@ -98,7 +98,7 @@ struct FacesOfCube {
     bool is_outside = false;
 };
 
-// How much thicker the hulls of a compound are met, m.
+// Thickness added to the hulls of a compound, m.
 double seal_of(const CollisionShape& shape, const FluidObstacleSettings& settings) {
     const auto* compound = std::get_if<CompoundShape>(&shape.definition());
     if (compound == nullptr || compound->children.size() < 2) return 0;
@@ -107,7 +107,7 @@ double seal_of(const CollisionShape& shape, const FluidObstacleSettings& setting
     return std::min(settings.max_seal, settings.seal_fraction * std::max({size.x, size.y, size.z}));
 }
 
-// Where a way (unit direction) enters a polytope whose faces lie `seal` farther out; nothing from inside. By clipping
+// Where a path (unit direction) enters a polytope whose faces lie `seal` farther out; nothing from inside. By clipping
 // at its faces (M. Cyrus, J. Beck, "Generalized two- and three-dimensional clipping", 1978).
 std::optional<ShapeRayHit> enter(const Polytope& polytope, double seal, Vec3 origin, Vec3 direction, double limit) {
     double first = 0, last = limit;
@@ -136,7 +136,7 @@ Vec3 octant_offset(int octant) {
 
 Vec3 rotate_back(const Mat3& rotation, Vec3 v) { return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)}; }
 
-// Share of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
+// Fraction of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
 double fraction_behind(const ObstacleDistance& face, double edge) {
     const Vec3 n = abs(face.normal);
     if (face.distance < -edge) return 1;
@@ -209,8 +209,8 @@ bool ObstacleProbe::look_at(const Bounds& box, double reach) {
 }
 
 ObstacleDistance ObstacleProbe::nearest_triangle(Vec3 p) const {
-    // Of triangles equally near (p is nearest to a common edge or corner) the one that looks most straight at p tells
-    // the side; of two that look both ways the front.
+    // Of triangles at the same distance (p is nearest to a common edge or corner) the one whose normal points most
+    // directly at p determines the side; of two that face opposite directions, the front counts.
     double best = reach_ * reach_, best_side = 0;
     Vec3 away;
     for (const Triangle& triangle : near_triangles_) {
@@ -261,7 +261,7 @@ void ObstacleProbe::add_octants(Vec3 p, double edge, float* fractions) const {
         }
         return;
     }
-    // Pieces lie side by side: their shares add up.
+    // Pieces lie side by side: their fractions add up.
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
         if (outside_of(piece.bounds, p) > edge) continue;
@@ -285,7 +285,7 @@ bool ObstacleProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {
     if (data.is_plane) return false;
     const Vec3 behind = p - normal * depth;
     if (!data.surface) return nearest(behind).distance > 0;
-    // A closed mesh is left through its back; a sheet has none.
+    // A closed mesh is left through its back; an open mesh has no back.
     return crossing(p, behind).has_value();
 }
 

@@ -14,39 +14,39 @@
 
 namespace embody::physics::fluid {
 
-/// How near an obstacle is: exact next to its faces, else at most the true distance; < 0 inside.
+/// Signed distance to an obstacle: exact next to its faces, else at most the true distance; < 0 inside.
 struct ObstacleDistance {
     double distance = 0;  ///< m
     Vec3 normal;          ///< unit, outwards
 };
 
-/// A placed shape as a fluid asks it: signed distances, shares of small cubes, and whether a way is barred. Of meshes
-/// and heightfields the front of a triangle is outside and what lies behind it within the reach asked for is inside.
-/// The hulls of a compound, which stand for one surface, leave gaps: each is met as a millimetre or so thicker than it
-/// is (its shares of cubes are its own).
+/// Queries of a placed shape by a fluid: signed distances, filled fractions of small cubes, and whether a path is
+/// blocked. Of meshes and heightfields the front of a triangle is outside, and what lies behind it within the queried
+/// reach is inside. The hulls of a compound, which stand for one surface, leave gaps: each is made a millimetre or so
+/// thicker (not for the fractions of cubes).
 class ObstacleProbe {
 public:
     ObstacleProbe(const CollisionShape& shape, const Transform& pose, const FluidObstacleSettings& settings);
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    /// Chooses the parts within `reach` of the box; the questions below are for points in the box alone. False if there
+    /// Chooses the parts within `reach` of the box; the queries below are for points in the box alone. False if there
     /// are none.
     bool look_at(const Bounds& box, double reach);
-    /// Farther than the reach: the reach.
+    /// Signed distance; the reach where it is larger.
     [[nodiscard]] ObstacleDistance nearest(Vec3 p) const;
-    /// Shares of the eight octants of the axis-aligned cube around p, of that edge, inside the obstacle: 0 … 1, added
-    /// to `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
+    /// Fractions of the eight octants of the axis-aligned cube around p, of that edge, inside the obstacle: 0 … 1,
+    /// added to `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
     void add_octants(Vec3 p, double edge, float* fractions) const;
     /// Whether the obstacle ends within `depth` behind the surface nearest to p, which is inside.
     [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
-    /// First place of the way from a to b where a surface is met, from either side of triangles, from outside of
-    /// obstacles: share of the way, and the normal against it.
+    /// First hit of the path from a to b with a surface, from either side of triangles, from outside of obstacles:
+    /// fraction of the path, and the normal against it.
     struct Crossing {
         double fraction = 0;
         Vec3 normal;
     };
     [[nodiscard]] std::optional<Crossing> crossing(Vec3 a, Vec3 b) const;
-    /// Whether it is triangles, which one may be on either side of.
+    /// Whether it consists of triangles, which have liquid on both sides.
     [[nodiscard]] bool is_surface() const;
 
 private:
@@ -66,7 +66,7 @@ private:
     const CollisionShape* shape_;
     Transform pose_;
     Bounds bounds_;
-    double seal_ = 0;  // m: so much thicker are its hulls met
+    double seal_ = 0;  // m: thickness added to its hulls
     std::vector<Piece> pieces_;
     double reach_ = 0;
     std::vector<std::uint32_t> near_pieces_;

@@ -8,10 +8,10 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// A cube that is farther than this from a surface is not cut by it, in half its edges: √3.
+// A surface farther from a cube's centre than this, in half edges, does not cut the cube: √3.
 constexpr double half_diagonal = 1.7320508;
 
-// Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
+// Whether a wall is between two places, and not the tip of an edge: a wall's sides face away from each other.
 bool is_walled(const ObstacleProbe& probe, Vec3 a, Vec3 b) {
     // Cosine between the two normals: a wall's sides have −1, an edge of 90° has 0 and blunter ones have more.
     constexpr double min_opposed = -0.5;
@@ -69,11 +69,11 @@ bool ObstacleRegion::add(ObstacleProbe& probe) {
     return true;
 }
 
-// What the shares cannot see (docs/physics/fluids.md, "Thin walls"): surfaces between two centres that are both
+// What the fractions do not show (docs/physics/fluids.md, "Thin walls"): surfaces between two centres that are both
 // outside, and walls around a centre that end before the next one.
 void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
     const double h = grid_->cell_size();
-    constexpr double thickness = 1.9;    // cells: nothing is left open of the faces beside a wall of two
+    constexpr double thickness = 1.9;    // cells: the faces beside a wall of two cells are wholly shut
     constexpr float on_surface = 1e-3f;  // cells: rounding of floats leaves 1e-6
     constexpr float max_apart = 1.05f;  // cells: a centre's distance from what is between it and the next, and rounding
     const auto shut = [&](int axis, int cell) {
@@ -170,7 +170,7 @@ void ObstacleRegion::measure_room() {
     room_.assign(cells, 1);
     if (!any_cut_) return;
     const auto fold = [&](int axis, int octants, const std::vector<float>& from, std::vector<float>& to) {
-        // An eighth, a quarter … of each cell's values is left: those of the other axes' octants.
+        // An eighth, a quarter … of each cell's values remains: those of the other axes' octants.
         const auto below = static_cast<std::size_t>(stride(axis));
         const auto width = static_cast<std::size_t>(octants);
         to.assign(cells * width, 0);

@@ -11,11 +11,12 @@
 
 namespace embody::physics::fluid {
 
-/// Obstacles measured on a box of cells: how far each centre is from them and which share of each octant (an eighth of
-/// a cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
+/// Obstacles measured on a box of cells: the distance of each centre from them and the fraction of each octant (an
+/// eighth of a cell) that they fill. From these come the fractions of the faces' control volumes and of the density's
+/// kernel.
 class ObstacleRegion {
 public:
-    static constexpr double reach = FluidGrid::obstacle_reach;  ///< cells: farther surfaces are not told apart
+    static constexpr double reach = FluidGrid::obstacle_reach;  ///< cells: maximum of stored distances
 
     /// Cells from `lower` to below `upper` of the grid; measured is one more all around.
     void begin(const FluidGrid& grid, const Cell& lower, const Cell& upper);
@@ -33,7 +34,8 @@ public:
     [[nodiscard]] int index(const Cell& c) const {
         return (c[0] - lower_[0] + 1) + size_[0] * ((c[1] - lower_[1] + 1) + size_[1] * (c[2] - lower_[2] + 1));
     }
-    /// Share of the control volume of the lower face along `axis`; valid from lower() to upper(), that included.
+    /// Obstacle fraction of the control volume of the lower face along `axis`; valid from lower() to upper(), that
+    /// included.
     [[nodiscard]] float fraction(int axis, int cell) const { return fraction_[axis][cell]; }
     /// The same without what is shut because it is thin.
     [[nodiscard]] float filled(int axis, int cell) const {
@@ -41,7 +43,7 @@ public:
     }
     [[nodiscard]] float distance(int cell) const { return distance_[cell]; }  ///< cells
     [[nodiscard]] std::uint8_t thin(int cell) const { return thin_[cell]; }   ///< ThinMark
-    /// Share of the density's kernel around the centre that is free; within the box.
+    /// Free fraction of the density's kernel around the centre; within the box.
     [[nodiscard]] float room(int cell) const;
 
 private:

@@ -36,7 +36,7 @@ void bind_face(MovingObstacle& moving, const FluidGrid& grid, int axis, const Ce
 
 }  // namespace
 
-// Where the last step left a body that it knew and that goes on from there.
+// Pose in which the last step left a body that has not been moved otherwise since.
 const FluidObstacles::LeftBody* FluidObstacles::left(const FluidObstacle& obstacle) const {
     const auto found = std::ranges::lower_bound(left_, obstacle.body, {}, &LeftBody::body);
     if (found == left_.end() || found->body != obstacle.body) return nullptr;
@@ -133,7 +133,7 @@ void FluidObstacles::measure_static(FluidGrid& grid, TaskPool& workers) {
     const auto around_drops = grid.unknown_around_drops();
     unknown.insert(unknown.end(), around_drops.begin(), around_drops.end());
     if (unknown.empty()) return;
-    // Neighbours cost alike: every worker takes each so many-th.
+    // Neighbours cost about the same: with n workers each takes every n-th.
     const auto number = static_cast<std::size_t>(workers.workers());
     parallel_for(workers, number, unknown.size() > 4, [&](int, IndexRange range) {
         std::vector<ObstacleProbe> probes = fixed_;
@@ -146,7 +146,7 @@ void FluidObstacles::measure_static(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
-// Shares and distances of one alone.
+// Fractions and distances of one obstacle alone.
 void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& grid) {
     // The cells in reach, within the box and away from its rim.
     const double h = grid.cell_size();
@@ -161,7 +161,7 @@ void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& gri
         lower[axis] = static_cast<int>(std::clamp(low, 1.0, grid.size()[axis] - 1.0));
         upper[axis] = static_cast<int>(std::clamp(high, 1.0, grid.size()[axis] - 1.0));
         moving.is_in_reach = moving.is_in_reach && lower[axis] < upper[axis];
-        // What is spread reaches a cell around the centre.
+        // The spread volume reaches a cell around the centre.
         const double at = moving.center[axis] / h;
         const bool is_inside = at > grid.lower()[axis] + lower[axis] + 1 && at < grid.lower()[axis] + upper[axis] - 1;
         moving.is_in_reach = moving.is_in_reach && (is_inside || !moving.is_small);
@@ -178,7 +178,7 @@ void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& gri
     region.finish();
 }
 
-// Where obstacles overlap, the first one has the space.
+// Where obstacles overlap, the space counts for the first one.
 void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) const {
     const float min_open = settings_.min_open;
     if (!moving.is_in_reach) return;
@@ -213,7 +213,7 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
 }
 
 std::vector<Bounds> FluidObstacles::in_reach(double dt, double cell_size) const {
-    // Cells: a particle goes no farther than 4 in a part (ParticleCollider::move), and asks for 2 around it.
+    // Cells: a particle goes no farther than 4 in a part (ParticleCollider::move), and queries 2 cells around it.
     constexpr double cells = 6;
     std::vector<Bounds> boxes;
     for (const MovingObstacle& moving : moving_) {
@@ -262,7 +262,7 @@ void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     });
     for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
 
-    // A cell that is shut all around is obstacle, be its centre on the seam of two obstacles.
+    // A cell that is shut all around is obstacle, even if its centre is on the seam of two obstacles.
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             if (grid.obstacle[cell] > 0.5f) return;

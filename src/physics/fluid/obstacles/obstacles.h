@@ -13,23 +13,23 @@
 
 namespace embody::physics::fluid {
 
-/// A rigid body as a fluid meets it in a step.
+/// A rigid body as an obstacle of a fluid in a step.
 struct FluidObstacle {
     std::uint32_t body = 0;  ///< caller's number; obstacles come in its order
     const CollisionShape* shape = nullptr;
-    std::uint32_t version = 0;  ///< another one after each change from outside
+    std::uint32_t version = 0;  ///< a new value after each change from outside
     bool is_static = false;     ///< never moves: measured once
     Transform pose;             ///< when the step begins, world
     Vec3 center;                ///< of mass, world, m
     Vec3 linear_velocity, angular_velocity;
     double inverse_mass = 0;  ///< 0: no fluid moves it
     Mat3 inverse_inertia = Mat3::zero();
-    Vec3 acceleration, angular_acceleration;  ///< by all but the fluid, as far as is known
+    Vec3 acceleration, angular_acceleration;  ///< by everything but the fluid, as far as known
 
     Vec3 impulse, angular_impulse;  ///< result: of the fluid on it in this step, about its centre of mass, N s, N m s
 };
 
-/// What an obstacle's surface in a cell is to the cell's pressure: its area vector, m², into the obstacle, and the
+/// Coupling of an obstacle's surface in a cell to the cell's pressure: its area vector, m², into the obstacle, and the
 /// moment of it about the obstacle's centre of mass, m³.
 struct ObstacleArea {
     int row = 0;
@@ -42,11 +42,11 @@ struct MovingObstacle {
     Vec3 center;  ///< in the fluid's frame, in the middle of the part
     Quat rotation;
     Vec3 linear_velocity, angular_velocity;
-    Vec3 kept_center;  ///< where it was when particles were last kept out of it: when the part begins
+    Vec3 kept_center;  ///< pose when particles were last kept out of it: at the part's start
     Quat kept_rotation;
     ObstacleProbe probe;
     ObstacleRegion region;
-    std::array<std::vector<float>, 3> fraction;  ///< of faces, by the region's index: what other obstacles left
+    std::array<std::vector<float>, 3> fraction;  ///< of faces, by the region's index: what other obstacles leave open
     std::vector<ObstacleArea> areas;
     std::vector<BoundFace> bound;
     ObstacleResponse response;
@@ -65,15 +65,15 @@ public:
 
     /// Before the parts of a step.
     void begin(std::span<FluidObstacle> obstacles, const FluidObstacleSettings& settings, FluidGrid& grid);
-    /// How far the obstacles are from where the last step left them, m: what they met there was not expected.
+    /// Distance of the obstacles from where the last step left them, m: contacts and other forces moved them there.
     [[nodiscard]] double unexpected_displacement() const;
-    /// Puts the obstacles where the last step left them, with velocities that bring them where they are in a second;
-    /// then back to where and as fast as they are.
+    /// Puts the obstacles where the last step left them, with velocities that bring them to their present places in a
+    /// second; then restores their places and velocities.
     void begin_catching_up();
     void end_catching_up();
-    /// Boxes that hold what the moving ones may meet in a part of that length, in the fluid's frame.
+    /// Boxes that hold what the moving obstacles may meet in a part of that length, in the fluid's frame.
     [[nodiscard]] std::vector<Bounds> in_reach(double dt, double cell_size) const;
-    /// Puts the probes of the moving ones where they are.
+    /// Updates the probes of the moving obstacles to their present poses.
     void place();
     /// Measures with the poses in the middle of the part.
     void measure(double dt, FluidGrid& grid, TaskPool& workers);

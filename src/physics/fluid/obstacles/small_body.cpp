@@ -33,8 +33,8 @@ void drag_small_body(FluidGrid& grid, double density, double viscosity, double p
     float gradient[3];
     const double wet = std::clamp<double>(sample_center(grid, grid.density, place, gradient), 0, 1);
     const double volume = obstacle.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);
-    Vec3 liquid;                             // its velocity around
-    std::array<double, 3> answer{}, mass{};  // what a unit impulse changes that by; the weighed mass at the faces
+    Vec3 liquid;                             // the liquid's velocity around the body
+    std::array<double, 3> answer{}, mass{};  // change of that by a unit impulse; the weighted mass at the faces
     std::array<FaceWeights, 3> around;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         around[axis] = face_weights(grid, place, static_cast<int>(axis));

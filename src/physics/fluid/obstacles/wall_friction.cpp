@@ -11,8 +11,8 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Distances from a wall, in cells, between which faces are the first layer: one layer wherever the wall lies between
-// the cells. Nearer ones are as good as in the wall.
+// Distances from a wall, in cells, between which faces are the first layer: exactly one layer wherever the wall lies
+// between the cells. Faces closer than this count as in the wall.
 constexpr float min_distance = 0.05f, max_distance = 1 + min_distance;
 
 /// A face that a wall slows.
@@ -52,7 +52,8 @@ void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double dens
         const Vec3 slip = velocity_around(grid, axis, cell) - obstacles.velocity_at(owner, center);
         const Vec3 along = slip - normal * dot(slip, normal);
         const double speed = length(along);
-        // The speed is that of half a cell away also where the face is nearer: cells hold no layers within them.
+        // The speed is taken at half a cell from the wall even where the face is closer: a cell does not resolve
+        // layers.
         const double stress = turbulent_stress(speed, std::max(distance, 0.5f) * h, viscosity / density);
         if (!(stress > 0)) return;
         const double rate = dt * stress / (speed * h * static_cast<double>(grid.open[axis][cell]));

@@ -13,8 +13,8 @@ namespace embody::physics::fluid {
 /// fluids.md, "Walls").
 double turbulent_stress(double speed, double y, double kinematic_viscosity);
 
-/// The faces next to obstacles that liquid does not move are slowed by the layer at the wall, which is thinner than a
-/// cell, and pull at them; on small bodies that move freely no such layer comes about. `particle_mass` in kg.
+/// Slows the faces next to obstacles that liquid does not move by the layer at the wall, which is thinner than a cell,
+/// and applies the reaction to the obstacles; small bodies that move freely have no such layer. `particle_mass` in kg.
 void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity,
                          double particle_mass, double dt, TaskPool& workers);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies that are elsewhere than the last step left them (docs/physics/fluids.md, "With rigid bodies").
+// Bodies that are not where the last step left them (docs/physics/fluids.md, "With rigid bodies").
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,8 @@ FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, Ta
     return followed;
 }
 
-// Out of thin obstacles by their true shapes; the particles keep their velocities: the next pressure stops them.
+// Moves particles out of thin obstacles by the true shapes; the particles keep their velocities, which the next
+// pressure solve stops.
 void FluidSolver::keep_out(TaskPool& workers) {
     obstacles_.place();
     parallel_for(workers, particles_.size(), particles_.size() > few_particles, [&](int, IndexRange part) {
@@ -42,8 +43,8 @@ void FluidSolver::keep_out(TaskPool& workers) {
     obstacles_.advance(0);
 }
 
-// The displacement of least Σ |d|² that lets the obstacles through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as
-// the pressure moves liquid at rest.
+// The displacement of least Σ |d|² that makes room for the obstacles and keeps the liquid's volume: d = −∇q, ∇·d = 0,
+// as the pressure moves liquid at rest.
 void FluidSolver::displace(double fraction, Followed& followed, TaskPool& workers) {
     const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size();

@@ -13,8 +13,8 @@ namespace {
 // Particles go no farther in a part of a step than this, in cells: the edge of a tile, as far as the box of cells
 // reaches around them in any case.
 constexpr double max_travel = 4;
-// A move is cut into pieces no longer than this, in cells: the distances of obstacles, which push out what has entered
-// them, are known for two cells.
+// A move is cut into pieces no longer than this, in cells: the distances of obstacles, by which particles are pushed
+// out of them, are known for two cells.
 constexpr float max_stride = 1.5f;
 
 void set_position(FluidParticle& particle, Vec3 p) {
@@ -68,7 +68,7 @@ bool ParticleCollider::is_near_thin(const float* position) const {
     return (grid_.thin[grid_.index(cell_at(grid_, position))] & near_thin) != 0;
 }
 
-// Particles come by cells: the probes look at what is around several of them at once.
+// Particles are sorted by cell: the probes are prepared for several of them at once.
 void ParticleCollider::look_around(const Bounds& swept) {
     if (contains(seen_, swept)) return;
     const double h = grid_.cell_size(), gap = settings_.wall_gap * h;
@@ -81,7 +81,7 @@ void ParticleCollider::look_around(const Bounds& swept) {
     for (std::size_t i = 0; i < moving_.size(); ++i) {
         Mover& mover = moving_[i];
         if (!mover.is_met()) continue;
-        // Wherever in the part a place is seen from, it is no farther from where it is than this.
+        // Bound of the displacement of a place between its own time and the middle of the part.
         const double arm = length(seen_.center() - mover.obstacle->center) + length(seen_.half_extents());
         const double aside = mover.shift + mover.turn * (arm + mover.shift);
         if (mover.probe.look_at(enlarged(seen_, gap + aside), gap)) near_moving_.push_back(i);
@@ -102,8 +102,8 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
     std::array<float, 3> place{particle.position[0], particle.position[1], particle.position[2]};
     if (!is_near_thin(particle.position)) return place;
 
-    // The cell whose centre it sees: its own, or the nearest one beside it. One that is shut all around holds nothing:
-    // its centre lies in a wall, or on its surface.
+    // The cell whose centre the particle can reach: its own, or the nearest one beside it. A cell that is shut all
+    // around holds no particle: its centre lies in a wall, or on its surface.
     const Vec3 p = to_vec(particle.position);
     Cell cell = cell_at(grid_, particle.position);
     const auto is_shut = [&](const Cell& c) {
@@ -128,7 +128,7 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
         cell = found;
     }
 
-    // Towards what is shut it reaches no farther than the centre.
+    // Towards shut faces the particle reaches no farther than the centre.
     const int index = grid_.index(cell);
     const Vec3 center = grid_.center(cell);
     for (int axis = 0; axis < 3; ++axis) {
@@ -140,7 +140,7 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
     return place;
 }
 
-// What goes into the wall stops.
+// Removes the velocity into the wall.
 void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const {
     const double inwards = std::min(0.0, dot(to_vec(particle.velocity) - wall.velocity, wall.normal));
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] -= static_cast<float>(wall.normal[axis] * inwards);
@@ -148,7 +148,7 @@ void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const 
 
 void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
     const float gap = settings_.wall_gap;
-    // The grid has a moving obstacle where it is in the middle of the part.
+    // The grid has a moving obstacle at its place in the middle of the part.
     const int owner = grid_.obstacle_owner[grid_.index(cell_at(grid_, particle.position))];
     const Mover* mover = owner >= 0 ? &moving_[static_cast<std::size_t>(owner)] : nullptr;
     const Pose pose = mover != nullptr ? mover->at(when.last) : Pose{};
@@ -166,7 +166,7 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     set_position(particle, pose.back(outside));
     stop_at(particle, {normal, wall});
 
-    // Where that leads nowhere (the seam of two obstacles) it does not go on.
+    // Where that does not lead out (the seam of two obstacles) the particle stops.
     const float now = distance_at(outside);
     if (now > -settings_.seam_depth) return;
     const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
@@ -175,7 +175,7 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(wall[axis]);
 }
 
-// Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
+// Shortens the path from `from` to `to` where the probe blocks it, and slides on along the surface.
 bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
     const int max_slides = settings_.max_slides;
     const double gap = settings_.wall_gap * grid_.cell_size();
@@ -190,7 +190,7 @@ bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3
         start = place;
         to = slide + 1 < max_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
     }
-    // Too near without having gone through, or inside since the start.
+    // Too close without having gone through, or inside since the start.
     const ObstacleDistance near = probe.nearest(to);
     const bool is_behind = probe.is_surface() && near.distance < 0;
     const double distance = is_behind ? -near.distance : near.distance;
@@ -202,7 +202,7 @@ bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3
     return true;
 }
 
-// By the true shapes; a moving one is seen from the middle of its way.
+// By the true shapes; a moving one is taken in the middle of its path.
 void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
     Bounds swept;
     swept.add(from);
@@ -232,12 +232,12 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
 }
 
 void ParticleCollider::move(FluidParticle& particle, const float* end) {
-    // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
+    // No particle moves farther than the tiles around the particles reach, nor by more than two cells at once.
     const auto longest = static_cast<float>(max_travel * grid_.cell_size());
     float displacement[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         displacement[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
-        if (!std::isfinite(displacement[axis])) return;  // its velocity tells the solver
+        if (!std::isfinite(displacement[axis])) return;  // the solver learns of it by the velocity
         size = std::max(size, std::fabs(displacement[axis]));
     }
     const int strides = 1 + static_cast<int>(size / (max_stride * static_cast<float>(grid_.cell_size())));

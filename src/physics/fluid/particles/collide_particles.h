@@ -11,21 +11,21 @@
 
 namespace embody::physics::fluid {
 
-/// Keeps particles out of obstacles: by the grid's distances, and near walls thinner than a cell by the true shapes.
+/// Keeps particles out of obstacles: by the grid's distances, and beside walls thinner than a cell by the true shapes.
 /// One a worker.
 class ParticleCollider {
 public:
     ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, const FluidCollisionSettings& settings,
                      double dt);
-    /// Where a particle meets the grid: its place, but on its own side of thin walls only.
+    /// Place at which a particle meets the grid: its own, restricted to its side of thin walls.
     std::array<float, 3> place_of(const FluidParticle& particle);
-    /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles let it.
+    /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles allow.
     void move(FluidParticle& particle, const float* end);
-    /// Whether the true shapes are asked there.
+    /// Whether the true shapes are queried there.
     [[nodiscard]] bool is_near_thin(const float* position) const;
 
 private:
-    /// A piece of the part, as shares of it.
+    /// A piece of the part, as fractions of it.
     struct Span {
         double first = 0, last = 1;
     };
@@ -41,7 +41,7 @@ private:
     void stop_at(FluidParticle& particle, const Wall& wall) const;
     void look_around(const Bounds& swept);
 
-    /// Where a moving obstacle is at a time of the part, and places beside it as the middle of the part sees them.
+    /// Place of a moving obstacle at a time of the part, and places beside it transformed to the middle of the part.
     struct Pose {
         Vec3 center;
         Quat rotation;
@@ -54,8 +54,8 @@ private:
         ObstacleProbe probe;
         const MovingObstacle* obstacle;
         Pose before, end;
-        double shift = 0;  ///< farthest that its centre is from where it is in the middle of the part, m
-        double turn = 0;   ///< and a point of it, by its rotation alone, by distance from the centre
+        double shift = 0;  ///< maximum distance of its centre from that in the middle of the part, m
+        double turn = 0;   ///< the same of a point of it by rotation alone, over its distance from the centre
         [[nodiscard]] Pose at(double fraction) const;
         [[nodiscard]] Pose posed(Vec3 center, Quat rotation) const;
         [[nodiscard]] bool is_met() const { return obstacle->is_in_reach && !obstacle->is_small; }
@@ -66,7 +66,7 @@ private:
     const FluidCollisionSettings settings_;
     std::vector<ObstacleProbe> fixed_;
     std::vector<Mover> moving_;  // as obstacles.moving()
-    Bounds seen_;                // the probes have looked at this box, and those of these indices meet it
+    Bounds seen_;                // the probes are prepared for this box, and those of these indices meet it
     std::vector<std::size_t> near_fixed_, near_moving_;
 };
 

@@ -13,7 +13,7 @@ struct FluidProperties;
 /// Whether neither the cell of a place nor those beside it are liquid: a particle there is a drop by itself.
 bool is_drop(const FluidGrid& grid, const float* place);
 
-/// Where drops are, of what, and for how long, s.
+/// The drops' surroundings, their liquid, and the length of the step, s.
 struct DropSurroundings {
     const FluidGrid& grid;
     const FluidObstacles& obstacles;
@@ -22,7 +22,8 @@ struct DropSurroundings {
     double dt = 0;
 };
 
-/// Takes from the velocity (m/s) of a drop at `place` what a wall beside it takes (docs/physics/fluids.md, "Drops").
+/// Reduces the velocity (m/s) of a drop at `place` by the friction of a wall beside it (docs/physics/fluids.md,
+/// "Drops").
 void slow_at_wall(const DropSurroundings& around, const float* place, float* velocity);
 
 }  // namespace embody::physics::fluid

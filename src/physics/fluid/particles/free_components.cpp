@@ -20,7 +20,7 @@ std::int32_t row_near(const FluidGrid& grid, const float* place) {
     return row;
 }
 
-// Whether any of the liquid touches what does not move freely: looked for first, since most does.
+// Whether any of the liquid touches what does not move freely: this is checked first, since most liquid does.
 bool touches_fixed(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles) {
     for (std::size_t row = 0; row < system.size(); ++row) {
         const auto cell = static_cast<int>(system.cell(row));
@@ -55,7 +55,7 @@ std::int32_t FreeComponents::joined(std::int32_t component) const {
     return component;
 }
 
-// A component that touches what does not move freely is not free; one that shares a body with another is one with it.
+// A component that touches what does not move freely is not free; two that touch a common body are one.
 void FreeComponents::touch(const FluidGrid& grid, const FluidObstacles& obstacles, int cell, std::int32_t component) {
     const int owner = grid.obstacle_owner[cell];
     if (owner < 0 || !(obstacles.moving()[static_cast<std::size_t>(owner)].obstacle->inverse_mass > 0)) {
@@ -68,7 +68,8 @@ void FreeComponents::touch(const FluidGrid& grid, const FluidObstacles& obstacle
     joined_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
 }
 
-// Of the cell that a place lies in or is next to; a drop at a body is with what touches the body.
+// Component of the cell that a place lies in or is next to; a drop at a body belongs to the component that touches the
+// body.
 std::int32_t FreeComponents::component_at(const FluidGrid& grid, const float* place) const {
     const std::int32_t row = row_near(grid, place);
     if (row >= 0) return component_of_row_[static_cast<std::size_t>(row)];
@@ -151,7 +152,7 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, double pa
         now[static_cast<std::size_t>(component_of_particle_[i])].add(to_vec(particles[i].position),
                                                                      to_vec(particles[i].velocity));
     }
-    std::vector<Correction> corrections(components_.size());  // as momenta by particle mass so far
+    std::vector<Correction> corrections(components_.size());  // so far as momenta over the particle mass
     for (std::size_t component = 0; component < components_.size(); ++component) {
         const Component &before = components_[component], &after = now[component];
         if (after.count == 0) continue;

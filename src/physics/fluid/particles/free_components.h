@@ -14,26 +14,26 @@
 
 namespace embody::physics::fluid {
 
-/// Lumps of liquid that touch nothing, or only bodies that move freely; those that share a body are one. What the cells
-/// do to a component has a resultant and a moment that it must not have: the tension of its surface would push and turn
-/// it, and what a body gives it would not arrive, since the faces' masses are not the particles'.
+/// Connected components of liquid that touch nothing, or only bodies that move freely; those that touch a common body
+/// are one. The forces of the cells on a component have a spurious resultant and moment: surface tension would push and
+/// turn it, and a body's impulses on it would be wrong, since the faces' masses are not the particles'.
 class FreeComponents {
 public:
     struct Options {
-        bool all = false;  ///< else only where the whole fluid is free
+        bool all = false;  ///< else the components are found only where the whole fluid is free
         FluidComponentSettings settings;
     };
-    /// Finds them, and what momentum their particles and the bodies have. Rows are known, and nothing has been done to
-    /// the bodies in this part of the step.
+    /// Finds the components and the momenta of their particles and of the bodies. Rows are known, and the bodies have
+    /// not been changed in this part of the step.
     void begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
                const std::vector<FluidParticle>& particles, const Options& options);
-    /// The same particles after they moved: each component gets the momentum that it had, less what its bodies were
-    /// given, and so it does with the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
+    /// For the same particles after they moved: restores the momentum of each component, less what its bodies were
+    /// given, and likewise the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
     void end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
              std::vector<FluidParticle>& particles) const;
 
 private:
-    /// Sums over its particles, m and m/s.
+    /// Sums over a component's particles, m and m/s.
     struct Component {
         bool is_free = true;
         double count = 0;
@@ -44,7 +44,7 @@ private:
         [[nodiscard]] Vec3 angular_momentum() const { return turn - cross(place, velocity) / count; }
         [[nodiscard]] Mat3 inertia() const;
     };
-    /// A body that a component touches, with what it was given before.
+    /// A body that a component touches, with the impulse that it had got before.
     struct Touched {
         std::int32_t component = -1;
         Vec3 impulse, angular_impulse;

@@ -12,7 +12,8 @@ namespace embody::physics::fluid {
 
 namespace {
 
-/// A reach while it is found, four numbers at a time: a place and the speed that follows it, the rest of the velocity.
+/// A reach while it is being found, four numbers at a time: a place followed by the speed, then the rest of the
+/// velocity.
 struct WideReach {
     Four lower = Four{} + INFINITY, upper = Four{} - INFINITY, zero{};
     float fastest_squared = 0;

@@ -32,16 +32,16 @@ inline constexpr std::size_t few_particles = 1000;
 struct ParticleReach {
     std::array<float, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};  ///< m
     float fastest_squared = 0;                                                                         ///< m²/s²
-    float zero = 0;  ///< none, if any place or velocity was none
+    float zero = 0;  ///< not a number if any place or velocity was not a number
 
     void add(const ParticleReach& other);
     [[nodiscard]] bool is_finite() const { return zero == 0; }
-    /// Largest coordinate, m; of no particles, or such that are not finite: infinity.
+    /// Largest coordinate, m; infinity without particles, or if a coordinate is not finite.
     [[nodiscard]] float farthest() const;
 };
 ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& workers);
 
-/// The speed that all but 1 in `particles_per_outlier` stay below, m/s, at most 1 % too large.
+/// The speed below which all but 1 in `particles_per_outlier` stay, m/s, at most 1 % too large.
 double usual_speed_of(std::span<const FluidParticle> particles, std::size_t particles_per_outlier, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -15,7 +15,7 @@ namespace {
 /// The eight faces or centres around a place and where it lies between them.
 struct Corners {
     int base;
-    float f[3];  ///< share of the way from the lower to the upper ones
+    float f[3];  ///< fraction of the distance from the lower to the upper ones
 };
 
 // `across`: axis along which the samples lie on the cells' faces; 3: on centres.
@@ -109,7 +109,7 @@ void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& partic
                        const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers) {
     clear_tiles(grid, workers);
 
-    // Tiles of one colour reach no common face, so that each face is added to in the same order by any workers.
+    // Tiles of one colour reach no common face, so that the order of sums at each face does not depend on the workers.
     for (int color = 0; color < FluidGrid::colors; ++color) {
         const auto list = grid.colored(color);
         parallel_for(workers, list.size(), list.size() > 3, [&](int, IndexRange range) {

@@ -11,8 +11,7 @@
 namespace embody::physics::fluid {
 
 /// Particles to faces: grid.mass, grid.velocity (momentum over mass), grid.density (`volume`: a particle's, in cells).
-/// grid.known tells which faces any particle reached.
-/// `places`: where each particle meets the grid.
+/// grid.known marks the faces that any particle reached. `places`: where each particle meets the grid.
 void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
                        const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers);
 

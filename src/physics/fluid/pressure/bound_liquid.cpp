@@ -20,7 +20,7 @@ bool offer_pressure(const FluidGrid& grid, int cell, Vec3 to, Vec3 weight, doubl
     return true;
 }
 
-// Share of a face's control volume below the surface: from the pressure of the cells at the face, or of those beside
+// Fraction of a face's control volume below the surface: from the pressure of the cells at the face, or of those beside
 // them where both are shut. `weight`: density times gravity.
 double liquid_fraction(const FluidGrid& grid, int axis, int cell, Vec3 weight) {
     const double h = grid.cell_size(), most = length(weight) * h;

@@ -12,8 +12,7 @@ namespace embody::physics::fluid {
 class FluidGrid;
 struct MovingObstacle;
 
-/// A shut face of an obstacle that fills only a part of its control volume, the rest of which goes along with the
-/// obstacle.
+/// A shut face of an obstacle that fills only a part of its control volume, the rest of which moves with the obstacle.
 struct BoundFace {
     int axis = 0, cell = 0;
     float fraction = 0;  ///< of the control volume that is shut but outside the obstacle
@@ -22,7 +21,7 @@ struct BoundFace {
     double speed = 0;    ///< of that liquid along the axis before it is bound, m/s
 };
 
-/// What impulses do to a body's velocities: its inverse mass and inertia, with the liquid that it has bound.
+/// Response of a body's velocities to impulses: its inverse mass and inertia, with the liquid that it has bound.
 struct ObstacleResponse {
     Mat3 linear = Mat3::zero(), coupling = Mat3::zero(), angular = Mat3::zero();
 
@@ -32,11 +31,11 @@ struct ObstacleResponse {
     }
 };
 
-/// What is liquid of a moving obstacle's bound faces, by the last pressure, and its speed; the obstacle's response. The
-/// obstacle takes the liquid's momentum over: its velocities become the common ones.
+/// Finds the liquid at a moving obstacle's bound faces by the last pressure, its speed, and the obstacle's response.
+/// The obstacle takes over the liquid's momentum: its velocities become the common ones.
 void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObstacle& moving);
 
-/// Gives the obstacle what the liquid's momentum has changed by, once both have their final velocity.
+/// Applies the change of the liquid's momentum to the obstacle, once both have their final velocity.
 void release_liquid(MovingObstacle& moving);
 
 }  // namespace embody::physics::fluid

@@ -16,7 +16,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Rows of a block at least, and blocks at most (an array's capacity): the workers share sums by them.
+// Minimum rows of a block, and maximum number of blocks (an array's capacity): workers take sums by blocks.
 constexpr std::size_t rows_of_block = 512, max_blocks = 16;
 
 template <class Vector>
@@ -58,7 +58,7 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
             sum += open;
         }
     }
-    // A trace of compressibility: a body of liquid without any surface has a pressure too.
+    // A small compressibility: liquid without any surface then has a definite pressure, too.
     diagonal_[row] = sum * (1 + 1e-8) + 1e-9;
 }
 
@@ -84,7 +84,7 @@ void PressureSystem::build(FluidGrid& grid, const FluidSettings& settings, TaskP
     set_bodies({}, 0);
 }
 
-// Two strips of tiles along one axis, layers along another: those in which there are most tiles.
+// Two strips of tiles along one axis, layers along another: the axes with the largest number of tiles.
 void PressureSystem::make_strips(const FluidGrid& grid, int workers) {
     strips_.assign(static_cast<std::size_t>(workers), {});
     if (workers == 1) {
@@ -153,7 +153,7 @@ void PressureSystem::factor() {
 void PressureSystem::substitute_forward(IndexRange rows) {
     for (std::size_t i = rows.first; i < rows.last; ++i) {
         const Row& row = rows_[i];
-        // The row before last: it is what takes time.
+        // The previous row's term comes last: the wait for its result takes the time.
         double t = r_[i] * scaling_[i];
         t += row.factor_lower[2] * y_[row.lower[2]];
         t += row.factor_lower[1] * y_[row.lower[1]];
@@ -206,7 +206,7 @@ void PressureSystem::set_bodies(std::span<const MovingObstacle> bodies, double s
     }
 }
 
-// What the pressure x does to the velocity of a body.
+// Change of a body's velocity by the pressure x.
 void PressureSystem::move_body(std::size_t body, std::span<const double> x) {
     Vec3 impulse, moment;
     for (const ObstacleArea& area : bodies_[body]->areas) {
@@ -218,7 +218,7 @@ void PressureSystem::move_body(std::size_t body, std::span<const double> x) {
                          response.angular_change(impulse, moment) * scale_};
 }
 
-/// What the workers of a solve share.
+/// State that is common to the workers of a solve.
 struct PressureSystem::Run {
     std::span<const double> b;
     std::vector<double>& x;
@@ -228,7 +228,7 @@ struct PressureSystem::Run {
     std::vector<Progress> progress;                       // by worker
 };
 
-// z = (L Lᵀ)⁻¹ r. `time`: how often it has been done before.
+// z = (L Lᵀ)⁻¹ r. `time`: number of such solves before.
 void PressureSystem::precondition(Run& run, int worker, std::uint64_t time) {
     const auto own = static_cast<std::size_t>(worker);
     const auto& layers = strips_[own].layers;
@@ -247,13 +247,13 @@ void PressureSystem::precondition(Run& run, int worker, std::uint64_t time) {
     }
 }
 
-/// The system as a worker sees it. When a function returns, all workers know all vectors but q.
+/// The system for one worker. When a function returns, all vectors but q are complete for all workers.
 struct PressureSystem::WorkerSystem {
     PressureSystem& of;
     Run& run;
     int worker;
     IndexRange blocks, bodies;
-    std::uint64_t times = 0;  // that z was found
+    std::uint64_t times = 0;  // number of times that z was found
 
     GradientResidual begin() {
         apply(run.x);

@@ -15,11 +15,12 @@
 
 namespace embody::physics::fluid {
 
-/// A x = b over the liquid's cells: (A x)_c = Σ_f w_f / θ_f (x_c − x_neighbour), with w the open share of a face and x
-/// = 0 at a distance θ in air, plus what the pressure does to bodies that it moves. Symmetric, positive definite.
+/// A x = b over the liquid's cells: (A x)_c = Σ_f w_f / θ_f (x_c − x_neighbour), with w the open fraction of a face and
+/// x = 0 at a distance θ in air, plus the effect of the pressure on bodies that it moves. Symmetric, positive definite.
 class PressureSystem {
 public:
-    /// Marks and numbers the liquid's cells; coefficients and preconditioner from the grid's open shares and surface.
+    /// Marks and numbers the liquid's cells; computes coefficients and preconditioner from the grid's open fractions
+    /// and surface.
     void build(FluidGrid& grid, const FluidSettings& settings, TaskPool& workers);
     [[nodiscard]] std::size_t size() const { return liquid_.cells.size(); }
     /// Cell of a row.
@@ -29,8 +30,8 @@ public:
 
     /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None, as after build(): the liquid alone.
     void set_bodies(std::span<const MovingObstacle> bodies, double scale);
-    /// Starts from x. Stops at residuals (largest component) below `tolerance`. Returns the iterations; most + 1 where
-    /// they did not suffice.
+    /// Starts from x. Stops at residuals (largest component) below `tolerance`. Returns the iterations; the maximum + 1
+    /// where they did not suffice.
     int solve(std::span<const double> b, std::vector<double>& x, double tolerance, int most, TaskPool& workers);
 
 private:
@@ -40,7 +41,7 @@ private:
         std::array<float, 3> to_lower, to_upper;          // coefficients, >= 0
         std::array<float, 3> factor_lower, factor_upper;  // scaled
     };
-    /// What a row takes from a body's velocity.
+    /// Coefficients of a body's velocity in a row.
     struct BodyPart {
         std::int32_t row, body;
         Vec3 area, moment;

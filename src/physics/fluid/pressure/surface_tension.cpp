@@ -71,7 +71,7 @@ double steady_tension(double density, double h, double dt) {
 
 void SurfacePressure::measure(double impulse, const FluidTensionSettings& settings, const FluidGrid& grid,
                               TaskPool& workers) {
-    constexpr float min_room = 1e-3f;  // of the kernel: what is less is rounding
+    constexpr float min_room = 1e-3f;  // of the kernel: smaller values are rounding
     settings_ = settings;
     impulse_ = impulse;
     const std::size_t cells = grid.row.size();
@@ -90,7 +90,8 @@ void SurfacePressure::measure(double impulse, const FluidTensionSettings& settin
         smoothing.apply(axis, filled_);
         smoothing.apply(axis, room_);
     }
-    // Shares of what is not obstacle, so that a wall curves nothing: the surface meets it at a right angle.
+    // Volume fractions of the part outside obstacles, so that walls add no curvature: the surface meets them at a right
+    // angle.
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             filled_[cell] = room_[cell] > min_room ? filled_[cell] / room_[cell] : 0;

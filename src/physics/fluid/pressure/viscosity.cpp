@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // C. Batty, R. Bridson, "Accurate viscous free surfaces for buckling, coiling, and rotating liquids", 2008: the step
 // minimises ½ ρ |u − u*|² + dt μ |D|² over the liquid, D the symmetric gradient, which needs no condition at the
-// surface and keeps angular momentum. Ours beside it: walls at their true distance, and bodies as unknowns.
+// surface and keeps angular momentum. We add walls at their true distance, and bodies as unknowns.
 #include "physics/fluid/pressure/viscosity.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
     return center;
 }
 
-// Share of a cell below the surface.
+// Fraction of a cell below the surface.
 float filled(const FluidGrid& grid, int cell) { return std::clamp(0.5f - grid.surface[cell], 0.0f, 1.0f); }
 
 }  // namespace
@@ -36,7 +36,7 @@ double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settin
     return 1 / (1 + (reynolds / layer) * (reynolds / layer));
 }
 
-// Unknown are the open faces of cells with liquid; their inertia is what is liquid of their control volume.
+// The unknowns are the open faces of cells with liquid; their inertia is the liquid in their control volume.
 void ViscositySystem::number_faces(const FluidGrid& grid, const FluidObstacles& obstacles) {
     faces_.clear();
     fixed_.clear();
@@ -116,7 +116,7 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidObstacles& obst
                                const Cell& c, double scale) {
     const int da = grid.stride(a), db = grid.stride(b);
     const int cells[4] = {cell, cell - da, cell - db, cell - da - db};
-    // The harmonic mean: what does not yield beside what does must not hold it.
+    // The harmonic mean: liquid that does not yield must not hold liquid beside it that does.
     double fraction = 0, fluidity = 0;
     int count = 0, liquid = 0;
     for (const int other : cells) {
@@ -258,7 +258,7 @@ void ViscositySystem::multiply(std::vector<double>& x, std::vector<double>& y) {
     }
 }
 
-// What is: velocities of faces, obstacles and bodies.
+// The present velocities of faces, obstacles and bodies.
 void ViscositySystem::start_from(const FluidGrid& grid, const FluidObstacles& obstacles) {
     const std::size_t free = faces_.size(), faces = free + fixed_.size();
     for (std::size_t i = 0; i < free; ++i) x_[i] = grid.velocity[faces_[i].first][faces_[i].second];
@@ -298,7 +298,7 @@ void ViscositySystem::fill_diagonal() {
     }
 }
 
-// r = M u* − A u*: what the strains do to the velocities as they are.
+// r = M u* − A u*: the effect of the strains on the present velocities.
 void ViscositySystem::fill_residual() {
     const std::size_t free = faces_.size(), faces = free + fixed_.size();
     multiply(x_, r_);

@@ -18,11 +18,11 @@ struct Viscosity {
     double yield_stress = 0;  ///< Pa
 };
 
-/// Whether it is more than rounding in a step of dt on cells of h.
+/// Whether viscosity is more than rounding in a step of dt on cells of h.
 bool is_viscous(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double dt);
 
-/// How far a liquid sticks to walls on cells of h, 0 … 1: by the Reynolds number of a cell at `speed`, m/s. Layers at
-/// walls that are thinner than a cell cannot be told, and it slides.
+/// Degree to which a liquid sticks to walls on cells of h, 0 … 1: by the Reynolds number of a cell at `speed`, m/s.
+/// Layers at walls that are thinner than a cell are not resolved: there the liquid slides.
 double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double speed);
 
 /// Implicit viscous step of the face velocities, with no slip at obstacles, no stress at the surface, and the bodies
