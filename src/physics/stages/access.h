@@ -33,10 +33,11 @@ struct WorldState;
 
 namespace embody::physics::stages {
 
-// What each stage of a step may touch: what it holds as const it only reads. An access is a view of a world's parts and
-// lives no longer than the world; copies see the same world. A ledger is null where no account is kept.
+// The parts of the world that each stage of a step may touch; a stage only reads const members. An access is a view of
+// a world's parts and lives no longer than the world; copies refer to the same world. A ledger is null where no account
+// is kept.
 
-/// Limits of speed, before a step, for what users did, and after its substeps.
+/// Limits of speed, before a step, for velocities that users set, and after its substeps.
 struct SpeedAccess {
     const WorldSettings& settings;
     const ActivityState& activity;
@@ -45,7 +46,7 @@ struct SpeedAccess {
     RigidState& rigid;
 };
 
-/// Waking: also of whoever finds out that a sleeper is touched.
+/// Waking: also for stages that find a sleeper touched.
 struct WakeAccess {
     explicit WakeAccess(WorldState& world);
     const WorldSettings& settings;
@@ -59,7 +60,7 @@ struct WakeAccess {
     EventState& events;
 };
 
-/// Filling a vessel: a new fluid's particles are where no obstacle is.
+/// Filling of a vessel: a new fluid has particles only outside obstacles.
 struct ObstacleAccess {
     explicit ObstacleAccess(WorldState& world);
     const WorldSettings& settings;
@@ -177,7 +178,7 @@ struct SleepAccess {
     EventState& events;
 };
 
-/// What is told of a step once it is over.
+/// The report of a step once it is over.
 struct ReportAccess {
     explicit ReportAccess(WorldState& world);
     const ContactState& contacts;

@@ -14,7 +14,7 @@ namespace dynamic {}
 /// What a step does to the world's state, stage by stage, in the order of stages.h. Only step and the face call them.
 namespace embody::physics::stages {
 
-// The rooms that it may see (docs/architecture.md).
+// Namespaces that it may use (docs/architecture.md).
 using namespace state;
 using namespace optimization;
 using namespace deformable;

@@ -7,8 +7,8 @@
 
 namespace embody::physics::stages {
 
-/// Calls work(worker, range) for ranges of the awake bodies, on all workers where there are many. What comes of it must
-/// not depend on who does what.
+/// Calls work(worker, range) for ranges of the awake bodies, on all workers where there are many. The result must not
+/// depend on which worker has which range.
 template <class Access, class Work>
 void parallel_for_awake(const Access& world, Work work) {
     constexpr std::size_t min_parallel_count = 500;  // bodies: below, waking the workers costs more

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Deformables after the rigid bodies (docs/physics/deformables.md): in substeps of their own, while the bodies that
-// they touch go along their paths of this step and give way to the nodes.
+// they touch move along their paths of this step and are pushed by the nodes.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -32,7 +32,7 @@ void for_each_body_near(const DeformableAccess& world, const DeformableRecord& r
     });
 }
 
-// A body with the path that it has gone in this step; one that sleeps or is fixed stands where it is.
+// A body with its path in this step; a sleeping or fixed body stands still.
 TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
     const BodyRecord& record = world.rigid.record(slot);
     const BodyState& state = world.rigid.motion[slot];
@@ -74,7 +74,7 @@ double fastest_node(const DeformableRecord& record) {
     return fastest;
 }
 
-// Whether somebody moves it by hand, however slowly.
+// Whether the user moves it by hand, however slowly.
 bool is_led(const DeformableAccess& world, std::uint32_t slot) {
     const BodyState& state = world.rigid.motion[slot];
     return world.rigid.record(slot).definition.kind == BodyKind::kinematic_body && !world.activity.is_asleep(slot) &&
@@ -114,7 +114,7 @@ bool is_disturbed(const DeformableAccess& world, const DeformableRecord& record)
     return is_disturbed;
 }
 
-// Whether any was: it may disturb others.
+// Returns whether any was woken: it may disturb others.
 bool wake_disturbed(const DeformableAccess& world) {
     bool has_woken = false;
     for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
@@ -188,7 +188,7 @@ void push_solids(const DeformableAccess& world, MovingDeformables& moving) {
     }
 }
 
-// Several solids each by one worker, a single one by all.
+// Several solids are solved by one worker each, a single one by all.
 void parallel_for_solids(const DeformableAccess& world, const MovingDeformables& moving, const auto& work) {
     const std::size_t count = moving.solids.size();
     if (count <= 1 || world.workers.workers() == 1) {
@@ -207,7 +207,7 @@ void solve_solids(const DeformableAccess& world, const MovingDeformables& moving
     parallel_for_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
 }
 
-// A further round for solids whose moves make energy; returns whether there is any.
+// A further iteration for solids whose moves add energy; returns whether there is any.
 bool correct_solids(const DeformableAccess& world, const MovingDeformables& moving) {
     std::atomic<bool> is_any = false;
     parallel_for_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
@@ -241,8 +241,8 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
     }
 }
 
-// The bodies where the pushes have brought them; what the rigid bodies will feel in their next step. Sleepers wake if
-// they are pushed otherwise than when they fell asleep.
+// Moves the bodies to where the pushes have brought them, and stores the pushes for the rigid bodies' next step.
+// Sleepers wake if the push has changed since they fell asleep.
 void put_back_bodies(const DeformableAccess& world, const MovingDeformables& moving) {
     EMBODY_ZONE("push bodies");
     constexpr double min_reach = 1e-6;  // m: keeps the quotient finite
@@ -333,7 +333,7 @@ void keep_contacts(const DeformableAccess& world, MovingDeformables& moving) {
     }
 }
 
-// Those whose numbers are none are stopped where they last were.
+// Those with non-finite numbers are stopped where they last were.
 void freeze_broken(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         if (!record->is_finite()) {
@@ -345,7 +345,7 @@ void freeze_broken(const DeformableAccess& world, MovingDeformables& moving) {
     }
 }
 
-// Whether it and all that it touches, directly or by others, are ready to sleep: bodies asleep, deformables quiet.
+// Whether it and all that it touches, directly or through others, are ready to sleep: bodies asleep, deformables quiet.
 bool may_sleep(const DeformableAccess& world, const DeformableRecord& record, std::vector<std::uint32_t>& seen) {
     seen.push_back(record.slot);
     if (record.quiet_time < world.settings.time_to_sleep) return false;
@@ -358,7 +358,7 @@ bool may_sleep(const DeformableAccess& world, const DeformableRecord& record, st
     });
 }
 
-// Where contacts of layers and bodies hold a node in turns it trembles for good.
+// Where contacts of layers and of bodies hold a node alternately, it jitters for good.
 bool is_quiet(DeformableRecord& record, const DeformableSleepSettings& settings) {
     if (fastest_node(record) < settings.max_speed) return true;
     if (record.solid()) return false;
@@ -383,7 +383,7 @@ void note_quiet(const DeformableAccess& world, MovingDeformables& moving) {
 }
 
 // Deformables sleep when they are quiet and so is all that they touch: at once with the bodies, for forces found while
-// these stand as if fixed would be no longer those that they were held by.
+// the bodies stand as if fixed would differ from those that held them.
 void let_deformables_sleep(const DeformableAccess& world) {
     if (!world.settings.sleeping) return;
     std::vector<DeformableRecord*> ready;

@@ -74,8 +74,9 @@ private:
     BoxGrid grid_;
 };
 
-// Whether the body cannot poke between two nodes, as each plane that one of them has the other has too, nearly: it lies
-// below both, so no more than a quarter of the way between the nodes times the angle between the planes may look out.
+// Whether the body cannot poke between two nodes, as each plane of one of them is nearly a plane of the other, too: the
+// body lies below both, so it stands out by at most a quarter of the distance between the nodes times the angle between
+// the planes.
 bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
     const auto of_a = planes_of(a), of_b = planes_of(b);
     if (of_a.empty() || of_b.empty()) return false;
@@ -91,7 +92,7 @@ bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
            std::ranges::all_of(of_b, [&](const NodeContact& plane) { return has_twin(plane, of_a); });
 }
 
-// All that find(share, found) finds, in the order of the shares.
+// All that find(range, found) finds, in the order of the ranges.
 template <class Found, class Find>
 std::vector<Found> SheetSearch::gather(std::size_t count, Find find) const {
     constexpr std::size_t min_parallel_count = 1000;  // edges or triangles
@@ -152,8 +153,8 @@ void SheetSearch::gather_triangles() {
     });
 }
 
-// `inside`: a point of the body well below it; `is_outwards(n)`: whether what is around the point lies below it as seen
-// along the unit vector n.
+// `inside`: a point of the body well below its surface; `is_outwards(n)`: whether what is around the point lies below
+// it as seen along the unit vector n.
 void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& is_outwards) {
     std::vector<std::uint32_t> near;
     grid_.visit(enlarged(Bounds{point, point}, radius), [&](std::uint32_t t) { near.push_back(t); });
@@ -186,7 +187,7 @@ void SheetSearch::find_corners() {
         const PlacedConvex piece = place(pieces[p], body_.start, {});
         const Convex& convex = *piece.shape;
         if (convex.kind == ConvexKind::sphere) {
-            // Larger ones meet edges first.
+            // Larger balls touch edges first.
             if (convex.radius < thin_.record->cloth()->edge_length())
                 find_corner(piece.position, piece.position, convex.radius, p * max_corners, [](Vec3) { return true; });
             continue;
@@ -221,7 +222,7 @@ void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<
     const double own_reach =
         2 * thin.record->definition.contact_radius + (fastest + length(settings.gravity) * time_step) * time_step;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-        // Nodes tell all of a plane.
+        // The contacts of nodes suffice for a plane.
         if (!may_collide[b] || std::holds_alternative<PlaneShape>(bodies[b].shape->definition())) continue;
         const double reach = own_reach + displacement_of(bodies[b], time_step);
         if (!overlaps(enlarged(bodies[b].shape->bounds(bodies[b].start), reach), sheet)) continue;

@@ -6,8 +6,9 @@
 
 namespace embody::physics::stages {
 
-/// What of bodies pokes between the nodes of a sheet, once the contacts of its nodes are known: edges, rims and round
-/// sides under its edges, corners and small balls under its triangles. As of find_thin_contacts().
+/// Contacts with what of bodies pokes between the nodes of a sheet, once the contacts of its nodes are known: edges,
+/// rims and round sides under its edges, corners and small balls under its triangles. Arguments as of
+/// find_thin_contacts().
 void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
                          const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers);
 

@@ -53,7 +53,7 @@ public:
     void add_body_contacts(std::vector<SolidContact>& contacts) const {
         const SolidDeformable& solid = *record_.solid();
         std::vector<NodeContact> found;
-        // Inner ones too: what its own weight squashes flat would hang below the floor by them.
+        // Inner nodes, too: else those of a solid that its own weight squashes flat would hang below the floor.
         std::vector<std::uint32_t> all(solid.nodes().size());
         std::iota(all.begin(), all.end(), 0u);
         find_node_contacts(solid.nodes(), all, *record_.node_ball, radius(), colliding_, world_.settings.time_step,
@@ -71,7 +71,8 @@ public:
     }
 
 private:
-    // Of nodes with one body. Those that are inside where it is to be left by a way go along that, to its box's end.
+    // Contacts of nodes with one body. Where the solid is to leave the body along a direction, nodes inside move along
+    // that, to the end of the body's box.
     void add_node_contacts(const TouchedBody& body, std::span<const NodeContact> found,
                            std::vector<SolidContact>& contacts) const {
         const Bounds box = body.shape->bounds(body.start);
@@ -102,7 +103,7 @@ private:
     }
 
     // Where much of the solid is within a body whose faces push it to different sides, as a scene may begin, these
-    // would pull it apart; until none of it is inside it leaves by the shortest way.
+    // would pull it apart; until none of it is inside, it leaves along the shortest displacement.
     [[nodiscard]] std::optional<ExitDirection> find_exit_direction(const TouchedBody& body, const Bounds& box,
                                                                    std::span<const NodeContact> found) const {
         const SolidDeformable& solid = *record_.solid();
@@ -186,8 +187,8 @@ void add_pairs(const DeformableAccess& world, std::span<DeformableRecord* const>
     }
 }
 
-// What a contact is known by from step to step; several of a point with the same partner go by their order.
-// A body's feature goes from triangle to triangle.
+// Identity of a contact from step to step; several contacts of a point with the same partner are identified by their
+// order. A body's feature moves from triangle to triangle.
 auto key(const SolidContact& c) {
     const std::uint32_t node = c.feature == 0 ? c.point.node[0] : 0;
     return std::make_tuple(c.partner, c.feature, node, !c.holds);

@@ -8,10 +8,10 @@
 
 namespace embody::physics::stages {
 
-/// Whether a deformable and a body, or another deformable, see each other.
+/// Whether a deformable and a body, or another deformable, may collide.
 bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body);
 bool may_collide(const DeformableDefinition& a, const DeformableDefinition& b);
-/// How far its nodes may come within a step, and a little more, m.
+/// Maximum travel of its nodes within a step, and a little more, m.
 double reach_of(const DeformableAccess& world, const DeformableRecord& record);
 
 /// All contacts and attachments of soft solids for this step, record after record, with what is remembered of their

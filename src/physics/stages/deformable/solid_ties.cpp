@@ -61,7 +61,7 @@ void SolidTies::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, doub
         });
         const double distance = length(apart), most = world_.settings.solver.deformable.thin_contact.recovery_speed * h;
         if (distance > most) place += (1 - most / distance) * apart;
-        // Where the solid's point were without the pull that its substep has counted with.
+        // Place of the solid's point without the pull that its substep has included.
         TouchedBody point;
         point.body = first_tie_slot + held.slot;
         point.start_center = place + held.compliance * record.tie_pulls[held.tie];
@@ -74,7 +74,7 @@ void SolidTies::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, doub
     }
 }
 
-// As much as each point gives if all are pulled alike: more than one alone, so that no answer goes too far.
+// Compliance of each point if all are pulled alike: larger than that of one alone, so that no response overshoots.
 void SolidTies::find_compliance(const DeformableRecord& thin, SolidDeformable& solid, std::span<Held> held) {
     force_.assign(solid.nodes().size(), {});
     move_.resize(solid.nodes().size());

@@ -7,9 +7,9 @@
 
 namespace embody::physics::stages {
 
-/// Ties of a sheet or rope to soft solids that have made their substep already. What the solid gives where it is tied
-/// is known, so for the sheet's solve it is a small body there; what the pull has become moves the solid in the same
-/// substep, and acts on it in the next (docs/physics/cloth.md).
+/// Ties of a sheet or rope to soft solids that have made their substep already. The solid's compliance where it is tied
+/// is known, so for the sheet's solve it is a small body there; the resulting pull moves the solid in the same substep,
+/// and acts on it in the next (docs/physics/cloth.md).
 class SolidTies {
 public:
     explicit SolidTies(const DeformableAccess& world) : world_(world) {}
@@ -35,7 +35,7 @@ private:
     std::vector<Vec3> force_, move_;
 };
 
-/// Whether a tie holds that node to that other.
+/// Whether a tie holds that node to that other deformable.
 bool is_tied(const DeformableRecord& thin, std::uint32_t node, DeformableHandle other);
 /// Whether it has a tie to a soft solid that is there.
 bool has_solid_ties(const DeformableAccess& world, const DeformableRecord& thin);

@@ -11,7 +11,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-// Points of segments between the nodes that may touch: corners and edges of bodies, round ones between two nodes.
+// Points of segments between the nodes that may touch: corners, edges and round sides of bodies between two nodes.
 void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
                            const WorldSettings& settings, ThinDeformable& thin) {
     constexpr double min_length = 1e-12;  // m: keeps the quotient finite

@@ -19,11 +19,11 @@ struct ThinDeformable {
     std::vector<NodeContact> contacts;
     std::vector<SegmentContact> segment_contacts;  ///< of ropes
     std::vector<SheetContact> sheet_contacts;      ///< of sheets, between their nodes
-    std::vector<Attachment> attachments;           ///< its own, then its ties to solids while these hold it
-    std::vector<std::uint32_t> attachment_bodies;  ///< index of each one's body, no_body where it is gone
+    std::vector<Attachment> attachments;           ///< its own attachments, then its ties to solids while these hold it
+    std::vector<std::uint32_t> attachment_bodies;  ///< index of each attachment's body, no_body where that is gone
 };
 
-/// What it may touch in a step of these settings. `may_collide`: for each of `bodies`, those of the step.
+/// Contacts that it may have in a step of these settings. `may_collide`: for each of `bodies`, those of the step.
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
                         const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers);
 /// One substep of it; pushes the bodies.

@@ -27,13 +27,13 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
         surface.radius = std::max(surface.radius, cloth.thickness / 2);
         return surface;
     }
-    constexpr double min_length = 1e-6;  // m: the cells of a grid are as long
+    constexpr double min_length = 1e-6;  // m: length of the cells of a grid
     double sum = 0;
     segments.clear();
     const std::vector<Vec3>& nodes = surface.nodes->position;
     for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
         sum += length(nodes[s + 1] - nodes[s]);
-        // By its number; of a broken one no more than a node.
+        // A segment by its number; a broken one is only a node.
         segments.push_back({s, record.rope()->is_broken(s) ? s : s + 1});
     }
     surface.edges = segments;
@@ -101,7 +101,7 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
     }
 }
 
-// What bodies weigh on each node, as if evenly spread over all nodes that they may touch.
+// Weight of bodies on each node, as if evenly spread over all nodes that they may touch.
 void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const {
     std::vector<double> touched(bodies.size(), 0);
     const auto bears = [&](const TouchSpring& spring) {
@@ -155,7 +155,7 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
         member.layers.choose(part(moves_, member), true);
     }
     pairs_.choose(moves_, true);
-    // From rest or from inertia, whichever is nearer to the end, as RopeLine does.
+    // Starts from rest or from inertia, whichever is closer to the solution, as RopeLine does.
     for (const Member& member : ropes()) {
         const std::span<Vec3> moves = part(moves_, member);
         const std::vector<Vec3> rest(moves.size());
@@ -180,8 +180,8 @@ void ThinGroupPart::gather_springs() {
     springs_.insert(springs_.end(), ties_.springs().begin(), ties_.springs().end());
 }
 
-// True where what acts has changed. The last solve's springs stay as they were in it, so that what one feels is what
-// the other felt.
+// True where the springs that act have changed. The last solve's springs stay as they were in it, so that both sides
+// have the same force.
 bool ThinGroupPart::choose_again() {
     bool has_changed = false;
     std::vector<TouchSprings> touch;
@@ -203,7 +203,7 @@ bool ThinGroupPart::choose_again() {
     return true;
 }
 
-// What the solves minimise: inertia, elastic energy, damping and springs of the moves, J.
+// The function that the solves minimise: inertia, elastic energy, damping and springs of the moves, J.
 double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
     double sum = 0;
     for (std::size_t m = 0; m < sheets_; ++m) sum += energy_of(sheets[m], part(moves_, members_[m]));
@@ -213,8 +213,8 @@ double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<cons
     return sum;
 }
 
-// Ropes are not linear: from the moves before towards those of the solve as far as the energy falls. Returns how far
-// the fastest node of a rope has gone, over a segment's length.
+// Ropes are not linear: a line search from the last moves towards those of the solve, as far as the energy falls.
+// Returns the displacement of the fastest node of a rope, over a segment's length.
 double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
     constexpr double rounding = 1e-6;  // of the energy: sheets are solved in floats
     const double min_fraction = world_.settings.solver.deformable.rope.min_step_fraction;
@@ -266,7 +266,7 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
                                [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
-// What others hold of it, who go by the moves that were found.
+// Nodes that others hold; these move by the moves that were found.
 std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) const {
     std::vector<TouchSpring> held;
     for (const std::span<const TouchSpring> springs : {pairs_.springs(), ties_.springs()}) {
@@ -289,7 +289,7 @@ std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) 
     return held;
 }
 
-// A clamped rope goes once more on its own: the solve knew nothing of its twist.
+// A clamped rope is solved once more alone: the common solve does not include its twist.
 void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     given_.assign(moves_.size(), {});
     const std::vector<double> fractions =
@@ -317,7 +317,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
 void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
     begin(bodies);
     if (solve(bodies)) return end(bodies);
-    // What is broken freezes on its own.
+    // A member with non-finite numbers freezes by itself.
     for (Member& member : members_) {
         advance_thin(*member.thin, member.substep, bodies, world_.workers);
         if (member.record().rope()) note_breaks(world_, member.record());

@@ -11,10 +11,10 @@ namespace embody::physics::stages {
 /// One part of a substep of sheets and ropes that are solved together (docs/physics/cloth.md).
 class ThinGroupPart {
 public:
-    /// `h`: of the part, which begins at `time` in the step, s. What is given outlives it.
+    /// `h`: of the part, which begins at `time` in the step, s. The arguments outlive it.
     ThinGroupPart(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                   double time);
-    /// Pushes the bodies, notes ropes that break. What is broken freezes.
+    /// Pushes the bodies, notes ropes that break. A member with non-finite numbers freezes.
     void advance(std::span<TouchedBody> bodies);
 
 private:
@@ -58,11 +58,11 @@ private:
     std::vector<BodyMove> body_moves_, body_from_;
 };
 
-/// What a sheet or rope has of a substep of h seconds that begins at `time` in the step.
+/// Input of a sheet or rope for a substep of h seconds that begins at `time` in the step.
 Substep substep_of(const DeformableAccess& world, const DeformableRecord& record, double h, double time);
-/// Tells of what broke in the last substep.
+/// Reports what broke in the last substep.
 void note_breaks(const DeformableAccess& world, const DeformableRecord& record);
-/// What others meet of it. `segments`: keeps those of a rope.
+/// Its surface for contacts with others. `segments`: storage for those of a rope.
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments);
 
 }  // namespace embody::physics::stages

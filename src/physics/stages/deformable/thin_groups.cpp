@@ -36,7 +36,7 @@ std::vector<bool> tied_nodes(const DeformableAccess& world, const DeformableReco
     return is_tied;
 }
 
-// What holds the two together does not push them apart as well.
+// Features that a tie holds together do not touch as well.
 void leave_out_tied(const DeformableAccess& world, const DeformableRecord& a, const ThinSurface& on_a,
                     const DeformableRecord& b, const ThinSurface& on_b, std::vector<ThinCandidate>& candidates) {
     if (a.definition.ties.empty() && b.definition.ties.empty()) return;
@@ -56,12 +56,12 @@ void leave_out_tied(const DeformableAccess& world, const DeformableRecord& a, co
     });
 }
 
-// What gravity and its constant force give it, m/s².
+// Acceleration by gravity and its constant force, m/s².
 double pull_on(const DeformableAccess& world, const DeformableRecord& record) {
     return length(record.acceleration(world.settings.gravity));
 }
 
-// What may touch of two whose bounds, as far as each may go, overlap.
+// Candidates of two members whose bounds, extended by their travel, overlap.
 std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const DeformableRecord& a,
                                          const DeformableRecord& b) {
     std::vector<ThinCandidate> candidates;
@@ -75,7 +75,7 @@ std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const De
 
 bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
 
-// What is wider than this has broken numbers, m: it will freeze, and nothing else is to know of it.
+// m: a wider member has broken numbers; it will freeze, and others ignore it.
 constexpr double max_finite_size = 1e5;
 
 bool may_touch_others(const Bounds& bounds) {
@@ -126,7 +126,7 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
     bodies.resize(first);
 }
 
-// By index in `thin`; those to what is gone, or does not move, hold nothing.
+// Ties by index in `thin`; ties to what is gone or does not move hold nothing.
 std::vector<ThinTie> find_ties(const DeformableAccess& world, std::span<const ThinDeformable> thin) {
     std::vector<ThinTie> ties;
     for (std::uint32_t i = 0; i < thin.size(); ++i) {
@@ -162,7 +162,7 @@ bool wake_tied(const DeformableAccess& world) {
     return has_woken_any;
 }
 
-// Contacts of a pair that has parted, or of what is gone, are forgotten; sleepers keep theirs.
+// Contacts of a pair that has separated, or of what is gone, are forgotten; sleepers keep theirs.
 void forget_parted(const DeformableAccess& world, std::span<const ThinGroup> groups,
                    std::span<const ThinDeformable> thin) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> together;

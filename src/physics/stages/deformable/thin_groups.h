@@ -19,19 +19,19 @@ struct ThinGroup {
     std::vector<std::uint32_t> members;  ///< indices in the list of all that move, ascending; often one alone
     std::vector<ThinPair> pairs;         ///< by index in `members`
     std::vector<ThinTie> ties;
-    bool in_substeps = false;  ///< goes in each substep: has a rope, or is tied to a solid
+    bool in_substeps = false;  ///< solved in each substep: has a rope, or is tied to a solid
 };
 
-/// Wakes sleeping sheets and ropes that one that is awake is going to touch, and what is tied to what is awake. Whether
-/// any was.
+/// Wakes sleeping sheets and ropes that an awake one is going to touch, and what is tied to awake ones. Returns whether
+/// any was woken.
 bool wake_touched_thin(const DeformableAccess& world);
-/// Each of `thin` in one group; forgets contacts of pairs that have parted. Ascending by first member.
+/// Each of `thin` in one group; forgets contacts of pairs that have separated. Ascending by first member.
 std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin);
 /// Substep k (1 …) of the deformables' substeps for all groups: groups with ropes or tied to solids in each, sheets
 /// alone once for the whole step, in the last. Pushes the bodies, notes ropes that break.
 void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
                          std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k);
-/// What the deformable of that slot has touched of others is no more.
+/// Forgets the contacts of the deformable of that slot with others.
 void forget_thin_contacts(DeformableState& deformables, std::uint32_t slot);
 
 }  // namespace embody::physics::stages

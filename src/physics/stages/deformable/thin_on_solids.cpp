@@ -63,7 +63,7 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
 }
 
 // A rigid body on a sheet on a solid presses on the solid itself, harder than the sheet in between could pass on: where
-// the sheet lies on the solid it does not feel it.
+// the sheet lies on the solid, the body does not act on the sheet.
 void ThinOnSolids::uncover(ThinDeformable& thin, std::uint32_t solid, double distance) const {
     const double covered_cosine = world_.settings.solver.deformable.thin_search.covered_cosine;
     const auto is_covered = [&](std::uint32_t node, const NodeContact& plane) {
@@ -78,10 +78,10 @@ void ThinOnSolids::uncover(ThinDeformable& thin, std::uint32_t solid, double dis
     });
 }
 
-// The solid answers a push a substep late. That swings up where what lies on it is heavy beside what it gives: a push
-// F = m (s'' - g) of what follows the surface s, and s = -c F, has s grow from substep to substep from r = m c/h² = 1/4
-// on; of a share a of each new push, only from a = 2/(1 + 4 r) on. c: of a solid that nothing else holds, if all pushed
-// alike.
+// The solid responds to a push a substep late. The oscillation grows where what lies on the solid is heavy for its
+// compliance c: with a push F = m (s'' - g) of a mass that follows the surface s, and s = -c F, s grows from substep to
+// substep from r = m c/h² = 1/4 on; with a fraction a of each new push, only from a = 2/(1 + 4 r) on. c is that of a
+// solid that nothing else holds, if all nodes are pushed alike.
 void ThinOnSolids::find_following(SolidDeformable& solid, const Nodes& sheet, double h, std::span<Held> held) {
     push_.assign(solid.nodes().size(), {});
     move_.resize(solid.nodes().size());
@@ -118,7 +118,7 @@ void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodie
         push.force += held->following * (-spring.felt - push.force);
         sheet.surface_pushes.push_back(push);
     }
-    // What was pushed and has left is still owed what the solid has not taken on.
+    // Nodes of the solid that the sheet has left still get the part of the push that has not acted yet.
     constexpr double min_push = 1e-9;  // N: far below what moves a node of any sheet
     const double lasting = world_.settings.solver.deformable.thin_search.push_memory;
     for (SurfacePush& push : pushes) {

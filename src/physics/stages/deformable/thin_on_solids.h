@@ -12,19 +12,19 @@
 namespace embody::physics::stages {
 
 /// Sheets and ropes on soft solids that have made their substep already (docs/physics/cloth.md). For the sheet each is
-/// a body that cannot be moved; what the sheet pushes acts on the solid from its next substep on.
+/// a body that cannot be moved; the sheet's push acts on the solid from its next substep on.
 class ThinOnSolids {
 public:
-    /// Surfaces of solids as they lie now, by slot, found when they are asked for.
+    /// Surfaces of solids as they lie now, by slot, found when first needed.
     using Surfaces = std::map<std::uint32_t, PlacedSurface>;
     /// All enabled solids of the world as they lie now, asleep or not.
     ThinOnSolids(const DeformableAccess& world, Surfaces& surfaces) : world_(world), surfaces_(surfaces) {}
 
-    /// Appends the solids near `thin` to the bodies that it touches, and contacts of its nodes with them. `h` is its
-    /// substep, s.
+    /// Appends the solids within reach of `thin` to the bodies that it touches, and contacts of its nodes with them.
+    /// `h` is its substep, s.
     void add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h);
-    /// After its substep: remembers what it pushes the solids, which are those of `bodies` from `first` on, and takes
-    /// the contacts away again.
+    /// After its substep: remembers its pushes on the solids, which are those of `bodies` from `first` on, and removes
+    /// the contacts again.
     void take(ThinDeformable& thin, std::span<const TouchedBody> bodies, std::size_t first);
 
 private:
@@ -33,7 +33,7 @@ private:
     struct Held {
         std::uint32_t body = 0, node = 0;
         PlacedSurface::Place place;
-        double following = 1;  ///< share of a new push that the solid takes on
+        double following = 1;  ///< fraction of a new push that acts on the solid
     };
     static std::pair<std::uint32_t, std::uint32_t> touch_of(const SurfacePush& push);
     static std::pair<std::uint32_t, std::uint32_t> key(const Held& held) { return {held.body, held.node}; }

@@ -21,7 +21,7 @@ struct Filling {
     double volume = 0;  ///< m³
     bool is_too_large = false;
 
-    // Takes a region's particles; `is_taken` tells places that earlier ones have.
+    // Takes a region's particles; `is_taken` says which places earlier regions have.
     template <class IsIn, class IsTaken>
     void fill(const Vec3& first, const std::array<int, 3>& counts, Vec3 spacing, IsIn is_in, IsTaken is_taken) {
         for (int z = 0; z < counts[2]; ++z) {
@@ -100,7 +100,7 @@ Result<void> fill_hulls(const FluidDefinition& definition, const FluidObstacleSe
     return {};
 }
 
-// Those in obstacles are left out.
+// Particles in obstacles are left out.
 void leave_out_obstacles(const ObstacleAccess& world, double cell_size, std::vector<Vec3>& places) {
     const FluidObstacleSettings& settings = world.settings.solver.fluid.obstacles;
     Bounds bounds;
@@ -116,7 +116,7 @@ void leave_out_obstacles(const ObstacleAccess& world, double cell_size, std::vec
     });
 }
 
-// Of the frame in which the particles' places are floats.
+// Origin of the frame in which the particles' places are floats.
 Vec3 origin_amid(const std::vector<Vec3>& places) {
     Bounds bounds;
     for (const Vec3 p : places) bounds.add(p);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Fluids before the rigid bodies (docs/physics/fluids.md, "With rigid bodies"): what their pressure does to a body in
-// this step is a force on it through the rigid solver's substeps, so that its contacts answer to it.
+// this step is a force on it through the rigid solver's substeps, so that its contacts respond to it.
 #include <algorithm>
 #include <cmath>
 
@@ -30,12 +30,12 @@ Vec3 at_most(Vec3 v, double most) {
     return size > most ? v * (most / size) : v;
 }
 
-/// What holds a body besides the forces that are known, as impulses.
+/// Forces on a body besides the known ones, as impulses.
 struct Support {
     Vec3 linear, angular;
 };
 
-// Contacts and joints of this step will do what they did in the last one, as far as that was no impact.
+// Contacts and joints are expected to have the impulses of the last step, without impacts.
 Support support_of(const FluidAccess& world, std::uint32_t slot, double density) {
     const FluidTouch& touch = world.fluids.touches[slot];
     if (touch.step + 1 != world.report.step) return {};
@@ -57,7 +57,7 @@ Vec3 turn_between(Quat from, Quat to) {
     return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
 }
 
-// A body that nothing but the user moves. One that was put somewhere else goes there in this step.
+// A body that only the user moves. One that was placed elsewhere moves there in this step.
 FluidObstacle fixed_obstacle(const FluidAccess& world, const FluidRecord& fluid, std::uint32_t slot) {
     const BodyRecord& record = world.rigid.record(slot);
     const BodyState& state = world.rigid.motion[slot];
@@ -78,7 +78,7 @@ FluidObstacle fixed_obstacle(const FluidAccess& world, const FluidRecord& fluid,
     const Vec3 displacement = state.center - last_center,
                turn = turn_between(seen->second.pose.rotation, obstacle.pose.rotation);
     if (displacement == Vec3{} && turn == Vec3{}) return obstacle;
-    // What was put farther away was not moved through the fluid.
+    // A body that was placed farther away was not moved through the fluid.
     const double jump = length(displacement) + length(turn) * record.reach;
     if (jump > world.settings.solver.fluid.obstacles.max_jump) return obstacle;
     obstacle.is_static = false;
@@ -198,7 +198,7 @@ void note_outcome(const FluidAccess& world, FluidRecord& fluid, const FluidOutco
     }
 }
 
-// Of all particles' middle, against gravity, m.
+// Height of the particles' centroid, against gravity, m.
 double height_of(const FluidSolver& solver, Vec3 gravity) {
     if (solver.particles().empty() || gravity == Vec3{}) return 0;
     const Vec3 up = -normalized(gravity);
@@ -210,7 +210,7 @@ double height_of(const FluidSolver& solver, Vec3 gravity) {
     return sum / static_cast<double>(solver.particles().size());
 }
 
-// Honey that runs is slower than water at rest trembles: what still sinks as a whole does not sleep.
+// Running honey is slower than the jitter of water at rest: liquid that still sinks as a whole does not sleep.
 bool has_sunk(const FluidAccess& world, const FluidRecord& fluid) {
     const double sunk = fluid.quiet_height - height_of(*fluid.solver, world.settings.gravity);
     const double max_sinking_speed = world.settings.solver.fluid.sleep.max_sinking_speed;
@@ -225,7 +225,7 @@ void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
     if (fluid.quiet_time >= time_to_sleep && has_sunk(world, fluid)) fluid.quiet_time = 0;
     if (!is_quiet) {
-        // What floats is quiet at its turning points, too: it waits for the liquid.
+        // A floating body is quiet at its turning points, too: it waits for the liquid to sleep.
         for (const auto& [slot, seen] : fluid.seen) {
             if (seen.force != Vec3{}) world.activity.sleep[slot].quiet_time = 0;
         }
@@ -268,7 +268,7 @@ void advance_fluid(const FluidAccess& world, FluidRecord& fluid) {
     fall_asleep_if_quiet(world, fluid);
 }
 
-// Particles stay outside of the bodies where these came to.
+// Keeps particles outside of the bodies at their new places.
 void follow_bodies(const FluidAccess& world, FluidRecord& fluid) {
     std::vector<std::uint32_t> slots;
     for (const auto& [slot, seen] : fluid.seen) {

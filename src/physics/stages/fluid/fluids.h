@@ -13,9 +13,10 @@ namespace embody::physics::stages {
 Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinition& definition);
 /// More particles for it, at rest, where no obstacle is. Fails where there are none or too many.
 Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, std::span<const Vec3> places);
-/// A fluid of the same matter and as large particles, without any yet, around the places of these.
+/// A fluid of the same matter and particle size, without particles yet, around the places of these.
 FluidRecord fluid_around(const FluidRecord& other, FluidIds ids);
-/// From one fluid to another, as they are; their ids there. read_particles has to follow for both.
+/// Moves particles from one fluid to another, as they are; returns their ids there. Call read_particles for both
+/// afterwards.
 FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to);
 /// Measures the obstacles around a new fluid, which the first step would have to do.
 void prepare_fluid(const FluidAccess& world, FluidRecord& fluid);

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::uint32_t not_remembered = 0xFFFFFFFFu;  // no path
 
-// Turns by `omega` in whole substeps and the rest of one, either way: as drift() does it. All these Cayley turns have
-// one axis, so they are one quaternion (vector · ω h/2, scalar): each multiplies it by (ω h/2, 1).
+// Turns by `omega` in whole substeps and the rest of one, either way: as drift() does. All these Cayley turns have one
+// axis, so they are one quaternion (vector · ω h/2, scalar): each multiplies it by (ω h/2, 1).
 Quat turn_evenly(Quat rotation, Vec3 omega, double time, double substep) {
     const Vec3 half = omega * (time < 0 ? -substep / 2 : substep / 2);
     const double square = length_squared(half);
@@ -121,7 +121,7 @@ const BodyState& BodyPaths::kept_state_at(std::uint32_t body, double time) {
         kept_[place] = {body, time, state_at(body, time)};
     }
 
-    // What was asked for last stays: two bodies are looked at side by side.
+    // The state found last is kept: two bodies are examined side by side.
     if (place == next_kept_) next_kept_ = (next_kept_ + 1) % kept_.size();
     return kept_[place].state;
 }

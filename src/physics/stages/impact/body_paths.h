@@ -14,23 +14,23 @@ namespace embody::physics::stages {
 /// Where bodies are within a step if nothing but their free motion and the impacts so far move them. A view of the
 /// world, made anew each step; its memory is the world's (ImpactMemory).
 ///
-/// What nothing holds flies as the substeps will move it: whole substeps by dynamic/equations_of_motion, and a part of
-/// one up to the time asked for. What others carry goes straight on and turns evenly: they cancel its weight.
+/// A free body moves as the substeps will move it: whole substeps by dynamic/equations_of_motion, and a part of one up
+/// to the given time. A body that others carry moves straight on and turns evenly: they cancel its weight.
 class BodyPaths {
 public:
     explicit BodyPaths(const ImpactAccess& world);
 
     /// The body at `time` (s since the step began): pose, velocities and inertia.
     [[nodiscard]] BodyState state_at(std::uint32_t body, double time) const;
-    /// The same, kept until another impact changes the path: who looks at an impact asks for its two bodies again and
-    /// again. Holds until the second next call for another body or time. Not for several threads.
+    /// The same, kept until another impact changes the path: an impact needs the states of its two bodies again and
+    /// again. Valid until the second next call for another body or time. Not thread-safe.
     const BodyState& kept_state_at(std::uint32_t body, double time);
     Transform pose_at(std::uint32_t body, double time);
     /// Sets the body's state at the step's start such that its path leads through `state` at `time`, with the same
     /// energy.
     void lead_through(std::uint32_t body, BodyState state, double time);
-    /// The same for what joints hold, which flies on no free path: its velocities change by these, m/s and rad/s, at
-    /// the step's start already, from where they lead to the same place at `time`.
+    /// The same for a jointed body, which has no free path: its velocities change by these, m/s and rad/s, already at
+    /// the step's start, and its place there changes such that its place at `time` stays the same.
     void change_velocities(std::uint32_t body, Vec3 linear, Vec3 angular, double time);
     /// Sets the body's state at the step's start.
     void begin_anew(std::uint32_t body, const BodyState& state);
@@ -45,7 +45,7 @@ public:
 
     /// What the free motion adds to the velocity, m/s²; 0 for what is carried.
     [[nodiscard]] Vec3 free_acceleration(std::uint32_t body) const;
-    /// Remembers the paths of these bodies at the ends of the substeps: most times asked for lie near one.
+    /// Remembers the paths of these bodies at the ends of the substeps: most queried times are close to one.
     void remember(std::span<const std::uint32_t> bodies);
 
 private:

@@ -7,12 +7,13 @@
 // Each impact happens at its own time t within the step: there the velocities are v + a t, eq. (3) changes them by Δv,
 // and the motion goes on from there. To keep one step for all bodies, the body is put on the path that leads through
 // the place of impact with the new velocity:  x ← x − t Δv,  v ← v + Δv  at the start of the step. A ball with
-// restitution 1 so keeps its energy exactly, whatever the time step. What spins goes the same way by its free rotation
-// (BodyPaths), forth to the impact and back, and what is jointed as its joints let it. Impacts of the same instant on
-// the same bodies are one.
+// restitution 1 so keeps its energy exactly, whatever the time step. Spinning bodies are moved likewise by their free
+// rotation (BodyPaths), forward to the impact and back, and jointed bodies as their joints allow. Impacts of the same
+// instant on the same bodies are one.
 //
-// What hits a heap without a bounce is kept cheap: its time is that of straight paths, its region found anew only where
-// the bodies have moved on, and the sliding estimated. Many contacts at once stop it, in an order that no model knows.
+// The impact of a body that hits a pile without a bounce is kept cheap: its time is that of straight paths, its region
+// is found anew only where the bodies have moved on, and the sliding is estimated. Many contacts stop such a body at
+// once, in an order that no model predicts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +38,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double time_rounding = 1e-12;  // s: moments as near as that are one; a step of 1e-5 s is the shortest
+constexpr double time_rounding = 1e-12;  // s: moments within this are one; a step of 1e-5 s is the shortest
 
 class ImpactStage {
 public:
@@ -108,7 +109,7 @@ void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
     if (next.time <= step_) push(next.time, contact);
 }
 
-// Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
+// Each contact is examined by itself, so on all workers; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
     EMBODY_ZONE("predict impacts");
     constexpr std::size_t min_parallel_count = 1000;  // contacts: below, waking the workers costs more
@@ -122,7 +123,7 @@ void ImpactStage::predict_all() {
         }
     });
 
-    // Where straight paths do not tell.
+    // Where straight paths are not accurate enough.
     memory_.uncertain.clear();
     memory_.uncertain_bodies.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -164,7 +165,7 @@ void ImpactStage::list_contacts() {
     }
 }
 
-// The report wants each impulse at a point: the nearest of the region found at the start.
+// The report has each impulse at a point: the nearest of the region found at the start.
 void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time) {
     ContactPoint* nearest = &contact.points[0];
     for (int i = 1; i < contact.count; ++i) {
@@ -180,7 +181,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     if (!contact.had_impact) ++world_.report.impacts;
     contact.had_impact = true;
 
-    // Until then the bodies' new paths overlap where they part.
+    // Until then the bodies' new paths overlap, although the bodies separate.
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const double parting = dot(relative_velocity(contact, point, world_.rigid.motion), contact.normal);
@@ -215,7 +216,7 @@ void ImpactStage::gather(double time) {
     gather_jointed(world_);
 }
 
-// Impacts of large assemblies are as dear as the bounces of a heap, and have as many.
+// Impacts of large assemblies cost as much as the bounces of a pile, and have the same budget.
 void ImpactStage::count_assembly() {
     const bool had_any_left = memory_.assembly_nodes < max_assembly_nodes_;
     if (!memory_.jointed.empty()) memory_.assembly_nodes += memory_.jointed.size() + memory_.jointed_joints.size();
@@ -229,7 +230,7 @@ bool ImpactStage::is_left_to_contacts(const Contact& contact) const {
     return has_joints(world_, contact.a) || has_joints(world_, contact.b);
 }
 
-// The bodies at the place of the impact. Joints have kept what they hold from falling on its way there.
+// The bodies at the place of the impact. Joints have kept the bodies that they hold from falling on the path there.
 void ImpactStage::go_to(double time) {
     for (ImpactMemory::Moved& moved : memory_.bodies) moved.start = world_.rigid.motion[moved.body];
     ImpactJoints& joints = memory_.group.joints;
@@ -329,7 +330,8 @@ bool ImpactStage::count_impact(std::uint32_t contact) {
     return may_bounce;
 }
 
-// The sites of the contact, whose region is `manifold`, and of those that come down with it. Whether it bounces.
+// Adds the sites of the contact, whose region is `manifold`, and of the contacts that come down with it. Returns
+// whether it bounces.
 bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, double time) {
     const bool may_bounce = count_impact(contact);
     regions_.add_manifold_sites(world_.contacts.list[contact], manifold, time, may_bounce);
@@ -340,7 +342,7 @@ bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, do
     return true;
 }
 
-// Whether the contact, of a body that takes part, collides at this instant, too; then its sites are added.
+// Whether the contact, of a body that takes part, collides at this instant, too; if so, adds its sites.
 bool ImpactStage::joins_in(std::uint32_t contact, double time) {
     const double latest = time + settings_.budget.simultaneous_fraction * step_;
     const auto& known = memory_.site_contact;
@@ -358,7 +360,7 @@ bool ImpactStage::joins_in(std::uint32_t contact, double time) {
 }
 
 // Impacts of the same instant on the same bodies are one collision: one after the other, the first would turn what is
-// symmetric. Balls that touch in a row still pass it on one by one: the next ones begin to approach by it.
+// symmetric. Balls that touch in a row still pass the impact on one by one: the next ones begin to approach by it.
 void ImpactStage::add_simultaneous(double time) {
     memory_.bodies.clear();
     list_bodies(0);
@@ -372,7 +374,7 @@ void ImpactStage::add_simultaneous(double time) {
     }
 }
 
-// The next impact, if its place and time are right; else it comes back with better ones.
+// Solves the next impact, if its place and time are accurate; else it is queued again with better ones.
 void ImpactStage::take(const ImpactEvent& event) {
     Contact& contact = world_.contacts.list[event.contact];
     if (is_left_to_contacts(contact)) return;
@@ -382,7 +384,7 @@ void ImpactStage::take(const ImpactEvent& event) {
     const bool as_found = is_rough && regions_.is_near(contact, time);
     if (!as_found) {
         if (!regions_.refine(contact, time, manifold)) {
-            // They pass each other: the region found at the start must not hold them up.
+            // The surfaces pass each other: the region found at the start must not stop the bodies.
             if (regions_.is_open_at_end(contact)) {
                 paths_.leave_open(contact);
                 memory_.is_open[event.contact] = 1;
@@ -425,8 +427,8 @@ void ImpactStage::predict_again() {
     }
 }
 
-// Joints turn what they hold from its free path. Their contacts are open if they carried nothing and the surfaces keep
-// apart on paths that joints change as in the last step, and still if that is wrong by a tenth.
+// Joints take the bodies that they hold off their free paths. Contacts of these are open if they carried nothing and
+// the surfaces stay apart on paths that joints change as in the last step, even if that change is wrong by a tenth.
 void ImpactStage::open_jointed_contacts() {
     if (world_.joints.active.empty()) return;
     for (std::uint32_t i = 0; i < world_.contacts.list.size(); ++i) {
@@ -443,7 +445,7 @@ bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
         if (!is_held) return HeldAcceleration{};
         HeldAcceleration now = memory_.held_accelerations[body];
 
-        // The path of what is carried goes without its weight.
+        // The path of a carried body is that without its weight.
         now.linear =
             to_vec3f(Vec3(now.linear) + world_.rigid.constants[body].acceleration - bodies_.free_acceleration(body));
         return now;

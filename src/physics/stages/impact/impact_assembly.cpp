@@ -15,7 +15,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr std::size_t max_flights = 16;  // remembered; what is analysed again is the same
+constexpr std::size_t max_flights = 16;  // maximum of remembered assemblies; analysing one again gives the same
 
 bool is_movable(const ImpactAccess& world, std::uint32_t body) { return world.rigid.motion[body].inverse_mass > 0; }
 
@@ -47,7 +47,7 @@ std::span<const std::uint32_t> joints_of(const ImpactMemory& memory, std::uint32
 }
 
 // Calls move(h) for the whole substeps from the step's start to `time`, s, and for the rest; from there back, with
-// negative ones, if the time is negative.
+// negative h, if the time is negative.
 template <class Move>
 void for_each_substep(const ImpactAccess& world, double time, Move move) {
     const double substep = world.settings.time_step / world.settings.substeps, length = std::fabs(time);
@@ -58,7 +58,8 @@ void for_each_substep(const ImpactAccess& world, double time, Move move) {
     if (rest > 0) move(rest);
 }
 
-// The system of the present assembly: from its last flight, or in the place of the one longest out of use.
+// The system of the present assembly: from its last motion, or in the place of the one that was not used for the
+// longest time.
 JointSystem& flight_of_jointed(ImpactMemory& memory) {
     std::vector<ImpactMemory::Flight>& flights = memory.flights;
     const auto is_it = [&](const ImpactMemory::Flight& flight) {

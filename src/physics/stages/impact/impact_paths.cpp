@@ -31,7 +31,7 @@ ImpactPaths::ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies)
     memory_.last_time.assign(count, 0);
     memory_.remaining_restitution.assign(count, 1);
 
-    // What the end of a free path can be faster than its start.
+    // Maximum by which the end of a free path can be faster than its start.
     memory_.speed_gain.assign(count, 0);
     for_each_awake(world, [&](std::uint32_t body) {
         const double turning =
@@ -73,8 +73,9 @@ bool ImpactPaths::hits_pile(const Contact& contact) const {
     return is_carried(contact.a) || is_carried(contact.b);
 }
 
-// Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
-// count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
+// Classification (paper, eq. 4): slower contacts rest. Loaded contacts and contacts that do not bounce must be far
+// faster to count as a collision: the contact solver stops them as well as an impact would. If they also touch already,
+// there is no impact to come.
 double ImpactPaths::slowest_speed(const Contact& contact) const {
     const bool can_bounce = bounces(contact);
     if (contact.was_touching && !can_bounce) return never;
@@ -91,7 +92,7 @@ bool ImpactPaths::is_surely_slow(const ContactSummary& summary) const {
     return summary.approach_speed + memory_.speed_gain[summary.a] + memory_.speed_gain[summary.b] < slowest;
 }
 
-// Prediction needs no more of a path than half a millimetre; what turns slowly turns evenly for that.
+// Prediction needs no more of a path than half a millimetre; a body that turns slowly turns evenly to that accuracy.
 ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) const {
     const auto with_tilt = [](const BodyPaths::Motion& motion) {
         const Quat& turn = motion.turn;
@@ -116,7 +117,7 @@ bool ImpactPaths::turns_far(std::uint32_t body) const {
 
 namespace {
 
-// Way and velocity of the surface point at `arm`.
+// Displacement and velocity of the surface point at `arm`.
 template <class Motion>
 void move_point(const Motion& motion, Vec3 arm, bool is_round, Vec3& displacement, Vec3& velocity) {
     const Vec3 turned = is_round ? arm : rotate(motion.turn, arm);
@@ -259,7 +260,7 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
             .may_hide = is_fast(contact.a, now.a) || is_fast(contact.b, now.b)};
 }
 
-// Whether the surfaces part at `start` or are apart then, and stay so: told at the ends of the substeps.
+// Whether the surfaces separate at `start` or are apart then, and stay so: checked at the ends of the substeps.
 bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
     for (int k = 0; k <= world_.settings.substeps; ++k) {
         const double time = k == 0 ? start : k * substep_;

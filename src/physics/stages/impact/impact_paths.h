@@ -38,16 +38,16 @@ public:
     [[nodiscard]] bool bounces(const Contact& contact) const;
     void note_bounce(const Contact& contact);
     [[nodiscard]] std::size_t max_pile_bounces() const { return max_pile_bounces_; }
-    /// Whether it hits what others carry: one of many contacts that stop it together.
+    /// Whether the contact is with a body that others carry: one of many contacts that stop the impact together.
     [[nodiscard]] bool hits_pile(const Contact& contact) const;
     [[nodiscard]] const ImpactSettings& settings() const { return settings_; }
-    /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
-    /// stage noted of them. Holds for bodies that had no impact in this step.
+    /// Whether no point can close as fast as an impact does: true for most contacts of a pile at rest, by what the
+    /// touch stage noted of them. Holds for bodies that had no impact in this step.
     [[nodiscard]] bool is_surely_slow(const ContactSummary& summary) const;
 
-    /// Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap. Points that close
-    /// as fast as an impact but meet after the step are the next step's impact: they are left open, so that the
-    /// substeps do not brake them before.
+    /// Along straight paths: certain for bodies that stay away or are slow, and accurate enough for bodies that hit a
+    /// pile. Points that close as fast as an impact but meet after the step are the next step's impact: they are left
+    /// open, so that the substeps do not brake the bodies before.
     Prediction predict_straight(Contact& contact);
     Prediction predict_exactly(Contact& contact);
     Prediction predict(Contact& contact) {
@@ -61,7 +61,7 @@ public:
 
 private:
     struct Motion : BodyPaths::Motion {
-        Vec3 tilt;  ///< twice its imaginary part, rad: all that a round body's turning does to its contacts
+        Vec3 tilt;  ///< twice its imaginary part, rad: the only effect of a round body's turning on its contacts
     };
     [[nodiscard]] Motion motion_at(std::uint32_t body, double time) const;
     [[nodiscard]] double slowest_speed(const Contact& contact) const;

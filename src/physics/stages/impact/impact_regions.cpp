@@ -59,7 +59,7 @@ std::optional<std::uint32_t> ImpactRegions::find_contact(std::uint32_t beside, c
     return static_cast<std::uint32_t>(found - world_.contacts.list.begin());
 }
 
-// How fast the nearest points of the region close, m/s.
+// Closing speed of the nearest points of the region, m/s.
 double ImpactRegions::closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) {
     const BodyState &a = bodies_.kept_state_at(contact.a, time), &b = bodies_.kept_state_at(contact.b, time);
     double speed = 0;
@@ -110,7 +110,7 @@ double ImpactRegions::first_touch(const Contact& contact) {
     return ImpactPaths::never;
 }
 
-// Follows the closing surfaces (secant) for a few rounds.
+// Follows the closing surfaces (secant method) for a few iterations.
 bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manifold) {
     const bool is_rough = paths_.hits_pile(contact) && !paths_.bounces(contact);
     const int max_iterations = is_rough ? settings_.rough_refine_iterations : settings_.refine_iterations;
@@ -181,8 +181,8 @@ ImpactRegions::PointGaps ImpactRegions::straight_gaps(const Contact& contact, do
 }
 
 // The same by the region found at the start of the step: the points whose gaps are at most `highest`, as a patch at
-// their middle and one by one. Without the patch, which goes first, what lands flat would lean to the corner that
-// happens to be solved first.
+// their middle and one by one. Without the patch, which is solved first, a body that lands flat would lean to the
+// corner that happens to be solved first.
 void ImpactRegions::add_points_below(const Contact& contact, const PointGaps& gaps, double highest, double time) {
     Vec3 arm_a, arm_b;
     int touching = 0;
@@ -206,13 +206,13 @@ void ImpactRegions::add_point_sites(const Contact& contact, double time) {
     add_points_below(contact, gaps, nearest + settings_.patch_gap, time);
 }
 
-// Whether the two bodies pass an impact on by one of their own, which gives back most of the energy.
+// Whether the two bodies pass an impact on by one of their own, which returns most of the energy.
 bool ImpactRegions::passes_on(const Contact& contact) const {
     return paths_.bounces(contact) && paths_.material_of(contact).restitution >= settings_.elastic_restitution;
 }
 
 // Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
-// own events, and so have elastic ones: one after the other, as the balls of Newton's cradle do it, keeps their energy.
+// own events, and so have elastic ones: one after the other, as the balls of Newton's cradle do, keeps their energy.
 void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time) {
     for (const std::uint32_t body : bodies) {
         if (world_.rigid.motion[body].inverse_mass == 0) continue;

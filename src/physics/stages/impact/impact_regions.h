@@ -27,10 +27,10 @@ public:
     /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
     [[nodiscard]] bool is_near(const Contact& contact, double time) const;
     /// The contact region at the moment of impact, found at the bodies' places then, and that moment: the prediction
-    /// used the normal of the start of the step. False: they pass each other.
+    /// used the normal of the start of the step. False where they pass each other.
     bool refine(const Contact& contact, double& time, Manifold& manifold);
-    /// When the regions found at the ends of the substeps first overlap, s; `never` if they do not. For what turns so
-    /// fast that other corners come down than those that were near at the step's start.
+    /// When the regions found at the ends of the substeps first overlap, s; `never` if they do not. For bodies that
+    /// turn so fast that other corners come down than those that were close at the step's start.
     double first_touch(const Contact& contact);
     /// Whether the bodies are apart at the end of the step, if nothing else happens to them.
     bool is_open_at_end(const Contact& contact);
@@ -38,9 +38,9 @@ public:
     // Each appends to the sites of the present impact.
     void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
     void add_point_sites(const Contact& contact, double time);
-    /// Of the other regions of the two bodies that close as well and are as near as corners of one region may be: the
-    /// other feet of a table that comes down flat, be it micrometres later. `first`, found by refine() just now, began
-    /// the impact. A contact collides with a bounce if `may_bounce(contact)`.
+    /// Sites of the other regions of the two bodies that close as well and whose gaps are within those of the corners
+    /// of one region: the other feet of a table that comes down flat, even if micrometres later. `first`, found by
+    /// refine() just now, began the impact. A contact collides with a bounce if `may_bounce(contact)`.
     template <class MayBounce>
     void add_sites_beside(std::uint32_t contact, const Manifold& first, double time, const MayBounce& may_bounce) {
         const double nearest = min_separation(first);
@@ -52,15 +52,15 @@ public:
             memory_.site_contact.resize(memory_.sites.size(), *found);
         }
     }
-    /// Of these bodies. Needs the lists of each body's contacts.
+    /// Sites of these bodies' contacts. Requires the lists of each body's contacts.
     void add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time);
 
 private:
-    /// Of those that collide_at() found, the contact's; nullptr if it has none.
+    /// The region of the contact among those that collide_at() found; nullptr if there is none.
     [[nodiscard]] const Manifold* find_region(const Contact& contact) const;
     static double min_separation(const Manifold& manifold);
     bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact, double time);
-    /// Of the same two bodies, the contact of this region.
+    /// The contact of this region, of the same two bodies.
     [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
     double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap);
     [[nodiscard]] bool passes_on(const Contact& contact) const;

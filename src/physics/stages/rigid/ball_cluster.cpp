@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Balls that roll near each other: each follows its own path (ball_path.cpp), all in equal parts of the step. Where two
-// of them come together within a part, all go on only to that time, and the two collide there (rolling_ball.cpp). The
+// Balls that roll close to each other: each follows its own path (ball_path.cpp), all in equal parts of the step. Where
+// two of them meet within a part, all move on only to that time, and the two collide there (rolling_ball.cpp). The
 // impact stage would lead each through the impact on a straight path and the contact solver back onto the ground: both
 // change the energy of what lies on curved ground by several percent a collision.
 #include "physics/stages/rigid/ball_cluster.h"
@@ -20,7 +20,8 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double min_fraction = 1e-6;  // of a part: a shorter rest is none, and each collision takes so much time
+constexpr double min_fraction = 1e-6;  // of a part: a shorter remainder is none, and each collision takes this much
+                                       // time
 
 class BallCluster {
 public:
@@ -32,7 +33,7 @@ public:
           pairs_(pairs),
           settings_(world.settings.solver.constraint) {}
     bool roll();
-    /// Whether it was given up because there was no end of collisions.
+    /// Whether the cluster was given up because its collisions did not end.
     [[nodiscard]] bool is_exhausted() const { return is_exhausted_; }
 
 private:
@@ -83,7 +84,7 @@ bool BallCluster::begin() {
     return !is_quiet() && collide_all();
 }
 
-// Balls whose collision was not foreseen lie in each other for a while.
+// Balls whose collision was not predicted overlap for a while.
 bool BallCluster::is_too_deep(const Pair& pair) const {
     const BallPlace &a = ball(pair.a).at, &b = ball(pair.b).at;
     const double parting = dot(normalized(b.center - a.center), b.motion.velocity - a.motion.velocity);
@@ -92,7 +93,7 @@ bool BallCluster::is_too_deep(const Pair& pair) const {
     return gap(pair) < -(stay ? limits.max_rest_depth_fraction : limits.max_depth_fraction) * size(pair);
 }
 
-// What has come to rest is the contact solver's.
+// The contact solver takes balls that have come to rest.
 bool BallCluster::is_quiet() const {
     return std::all_of(members_.begin(), members_.end(), [&](std::uint32_t index) {
         return length(ball(index).at.motion.velocity) < settings_.impact.min_impact_speed;
@@ -105,7 +106,7 @@ int BallCluster::count_parts() const {
     return parts;
 }
 
-// All of them, to their next places.
+// Moves all of them to their next places.
 bool BallCluster::advance(double time) {
     return std::all_of(members_.begin(), members_.end(), [&](std::uint32_t index) {
         Candidate& own = ball(index);
@@ -114,7 +115,7 @@ bool BallCluster::advance(double time) {
     });
 }
 
-// The share of the part after which the two come together, on straight lines; 1 if they do not.
+// The fraction of the part after which the two meet, on straight lines; 1 if they do not.
 double BallCluster::meeting(const Pair& pair) const {
     const Candidate &a = ball(pair.a), &b = ball(pair.b);
     const Vec3 start = b.at.center - a.at.center, change = b.next.center - a.next.center - start;
@@ -125,7 +126,7 @@ double BallCluster::meeting(const Pair& pair) const {
     return discriminant < 0 ? 1 : std::min(1.0, (-along - std::sqrt(discriminant)) / square);
 }
 
-// False where the blow takes one of them off its ground.
+// False where the impact lifts one of them off its ground.
 bool BallCluster::collide(Pair& pair) {
     Candidate &a = ball(pair.a), &b = ball(pair.b);
     const Vec3 direction = normalized(b.at.center - a.at.center);
@@ -148,7 +149,7 @@ bool BallCluster::collide(Pair& pair) {
     return true;
 }
 
-// All that touch and approach each other, until none does.
+// Collides all pairs that touch and approach each other, until none does.
 bool BallCluster::collide_all() {
     constexpr double rounding = 1e-9;  // m/s: that of speeds of 1e6 m/s; slower balls only touch
     const double touch = 2 * settings_.rolling.cluster.touch_fraction;

@@ -121,7 +121,7 @@ void place_body(const WakeAccess& world, ImpactMemory& impacts, std::uint32_t bo
 
 void lift_bodies(const WakeAccess& world, std::span<const std::uint32_t> bodies) {
     world.activity.awake_changed = true;
-    // Only those around these bodies: who was named before keeps until the next step.
+    // Wakes only those around these bodies: bodies named before stay listed until the next step.
     std::vector<std::uint32_t> named_before = std::exchange(world.activity.to_wake, {});
     wake_around(world, bodies);
     for (const std::uint32_t body : bodies) wake_group_of(world, body);

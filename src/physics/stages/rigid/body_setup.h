@@ -13,7 +13,7 @@
 
 namespace embody::physics::stages {
 
-/// What a definition becomes: checked and computed before anything in the world changes.
+/// A body's data from its definition: checked and computed before anything in the world changes.
 struct BodySetup {
     BodyRecord record;
     BodyConstants constants;
@@ -34,7 +34,7 @@ void lift_bodies(const WakeAccess& world, std::span<const std::uint32_t> bodies)
 /// The width of the contact solver; 0: the widest. Fails where the processor cannot.
 Result<void> choose_lanes(SubstepMemory& substeps, int lanes);
 
-/// Start of the constraint of a joint record.
+/// Initial constraint of a joint record.
 Result<Joint> set_up_joint(const RigidState& rigid, const JointDefinition& definition);
 
 /// Rebuilds the list of pairs that joints keep from colliding.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bodies that move or turn by more than their thickness in a step are swept over their whole way, and put back to where
-// they first touch what they would pass. Their velocities stay: the next step finds the touch and solves it as an
-// impact, so momentum is kept whatever is hit. Nothing else of the world is looked at, so slow worlds pay one
+// Bodies that move or turn by more than their thickness in a step are swept over their whole path, and put back to
+// where they first touch what they would pass through. Their velocities stay: the next step finds the touch and solves
+// it as an impact, so momentum is kept whatever is hit. Nothing else of the world is read, so slow worlds cost one
 // comparison a body.
 #include <algorithm>
 #include <cmath>
@@ -23,26 +23,26 @@ namespace embody::physics::stages {
 
 namespace {
 
-/// A body on its way through the step, and how much of the way it may go.
+/// A body's path through the step, and the fraction of it that the body may move.
 struct FastBody {
     std::uint32_t body = 0;
     double fraction = 1;
 };
 
-/// Two fast bodies that meet on their ways.
+/// Two fast bodies that meet on their paths.
 struct Meeting {
     double time = 1;
     std::size_t first = 0, second = 0;  ///< among the fast bodies
 };
 
-// How far it may move without passing through another body unseen, m.
+// Maximum travel without passing through another body undetected, m.
 double thickness_of(const ContinuousAccess& world, const BodyRecord& record) {
     const double fraction = world.settings.solver.collision.continuous_travel_fraction;
     return (record.definition.continuous ? fraction : 1.0) * record.inner_radius;
 }
 
-// Whether a body turns so far that points outside of its inner ball sweep its thickness; what turns less is followed by
-// the contacts themselves.
+// Whether a body turns so far that points outside of its inner ball sweep its thickness; the contacts themselves follow
+// bodies that turn less.
 bool turns_fast(const ContinuousAccess& world, const BodyRecord& record, const BodyState& state) {
     const double half_sine = length(Vec3{state.turn.x, state.turn.y, state.turn.z});
     return half_sine > world.settings.solver.collision.continuous_half_turn &&
@@ -58,7 +58,7 @@ bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
            turns_fast(world, record, state);
 }
 
-// Things that fly side by side do not pass through each other.
+// Bodies that move side by side do not pass through each other.
 bool may_pass(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
     const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
     const BodyState &sa = world.rigid.motion[a], &sb = world.rigid.motion[b];
@@ -83,7 +83,7 @@ Sweep sweep_of(const ContinuousAccess& world, std::uint32_t body) {
     return {body_pose(start, center), world.rigid.pose(body), center};
 }
 
-// All places of the body on its way: balls around its centre where it turns much.
+// Bounds of all places of the body on its path: balls around its centre where it turns much.
 Bounds swept_bounds(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep) {
     const BodyRecord& record = world.rigid.record(body);
     Bounds swept = record.shape->bounds(sweep.start);
@@ -98,7 +98,7 @@ Bounds swept_bounds(const ContinuousAccess& world, std::uint32_t body, const Swe
 
 std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
                                    const Sweep& path_b) {
-    // Sliding and rolling along a thing ends no deeper in it than this.
+    // Maximum depth at which sliding or rolling along a body ends in it.
     const BodyRecord& record = world.rigid.record(a);
     const CollisionSettings& settings = world.settings.solver.collision;
     const double harmless = record.definition.continuous ? 0 : settings.continuous_slide_fraction * record.inner_radius;
@@ -106,9 +106,9 @@ std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t 
                           {settings.continuous_gap / 2, settings.continuous_gap, harmless});
 }
 
-// The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from
-// here: what the forces did on the way since is taken back, ½ |v|² − a·x stays. Else each stop of a falling body would
-// lift it for nothing.
+// The velocity with which a body that has `velocity` under the constant `acceleration` had at the place `back` from
+// here: the work of the forces since then is taken back, ½ |v|² − a·x stays. Else each stop of a falling body would add
+// potential energy.
 Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
     // ½ |v − a t|² = ½ |v|² + a·back, the smaller t; where there is none, the slowest v − a t.
     const double squared = length_squared(acceleration), along = dot(velocity, acceleration);
@@ -117,8 +117,8 @@ Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
     return velocity - acceleration * ((along < 0 ? along + root : along - root) / squared);
 }
 
-// Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
-// turns back would take or give energy.
+// Puts a body back to a fraction of its path. The spin stays constant in the body's axes: with a constant spin in the
+// world's axes, turning the inertia back would change the energy.
 void put_back(const ContinuousAccess& world, std::uint32_t body, double fraction) {
     if (fraction >= 1) return;
     BodyState& state = world.rigid.motion[body];
@@ -136,7 +136,7 @@ void put_back(const ContinuousAccess& world, std::uint32_t body, double fraction
     refresh_inertia(state, world.rigid.constants[body]);
 }
 
-// Calls visit(other, its place among the fast ones or their number) for what a body may meet on its way.
+// Calls visit(other, its place among the fast ones or their number) for each body that a body may meet on its path.
 template <class Visit>
 void for_each_met(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep,
                   const std::vector<FastBody>& fast, Visit&& visit) {
@@ -150,7 +150,7 @@ void for_each_met(const ContinuousAccess& world, std::uint32_t body, const Sweep
     });
 }
 
-// Those that may tunnel, in the order of the bodies.
+// Bodies that may tunnel, in the order of the bodies.
 std::vector<FastBody> list_fast(const ContinuousAccess& world) {
     thread_local std::vector<std::vector<FastBody>> kept;
     std::vector<std::vector<FastBody>>& found = kept;  // of this thread, for all workers
@@ -169,7 +169,7 @@ std::vector<FastBody> list_fast(const ContinuousAccess& world) {
     return fast;
 }
 
-// Fast bodies that meet each other stop where they do, the earliest first; whoever stopped is met no more.
+// Fast bodies that meet each other stop where they meet, the earliest first; a stopped body is met no more.
 void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast) {
     std::vector<Meeting> meetings;
     for (std::size_t i = 0; i < fast.size(); ++i) {
@@ -191,12 +191,12 @@ void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast
     for (const FastBody& each : fast) put_back(world, each.body, each.fraction);
 }
 
-// The share of what is left of its way after which a body first touches something that is not fast itself.
+// The fraction of the rest of its path after which a body first touches something that is not fast itself.
 double first_touch(const ContinuousAccess& world, std::uint32_t body, const std::vector<FastBody>& fast) {
     const Sweep sweep = sweep_of(world, body);
     double first = 1;
     for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
-        // What rolls along a surface has followed it all the way; a straight line between its ends would cut into
+        // A body that rolls along a surface has followed the surface; a straight line between its ends would cut into
         // edges.
         if (place < fast.size() || has_rolled_along(world, body, other)) return;
         const Transform pose = world.rigid.pose(other);

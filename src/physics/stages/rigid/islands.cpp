@@ -28,9 +28,9 @@ bool is_active(const IslandAccess& world, const JointDefinition& joint) {
     return is_there(joint.body_a.index) && (moves(joint.body_a.index) || moves(joint.body_b.index));
 }
 
-// Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart. What spins then flies
-// free, exactly, instead of sharing the contact solver's approximate turns, if nothing else holds either body; and
-// joints without contacts keep their energy, which those that take turns with contacts do not.
+// Contacts that need no solver: by the paths of the impact stage the surfaces stay apart. A spinning body then moves
+// freely, exactly, without the contact solver's approximate turns, if nothing else holds either body; and joints
+// without contacts keep their energy, while joints solved alternately with contacts do not.
 void set_idle_contacts(const IslandAccess& world) {
     const ImpactMemory& memory = world.impacts;
     std::vector<std::uint8_t>& is_held = world.impacts.is_held;
@@ -68,8 +68,8 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t body) {
     return body;
 }
 
-// The bodies that active joints hold, but where one that is connected with them has a limit or a motor: that may stop
-// them within a step, so that nothing is known of their paths.
+// The bodies that active joints hold, without those connected with a joint that has a limit or a motor: that may stop
+// them within a step, so that their paths are not known.
 void mark_jointed_paths(const IslandAccess& world) {
     std::vector<std::uint8_t>& has_path = world.impacts.has_jointed_path;
     has_path.clear();
@@ -98,7 +98,7 @@ void mark_jointed_paths(const IslandAccess& world) {
 }  // namespace
 
 void list_active_joints(const IslandAccess& world) {
-    // Joints between sleepers stay where they are.
+    // Joints between sleepers belong to no island.
     world.joints.active.clear();
     world.joints.active_slots.clear();
     for (std::uint32_t slot = 0; slot < world.joints.records.slot_count(); ++slot) {

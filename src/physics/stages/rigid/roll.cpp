@@ -16,10 +16,11 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;  // cosine: 4e-5 rad, what floats of a mesh leave of a flat face is 1e-7
-constexpr double aligned = 1e-6;  // sine, share of the size: what lies on one axis; definitions round to below 1e-7
+constexpr double same_normal = 1 - 1e-9;  // cosine: 4e-5 rad; a mesh's floats leave 1e-7 of a flat face
+constexpr double aligned = 1e-6;  // sine, fraction of the size: within this, pieces lie on one axis; definitions round
+                                  // to below 1e-7
 
-// Adds the rings of a piece whose middle is there (from the centre of mass, body axes).
+// Adds the rings of a piece with that centre (from the centre of mass, body axes).
 bool add_rings(const Convex& shape, Vec3 middle, Vec3 axis, RollingBody& body) {
     if (body.ring_count + 2 > RollingBody::max_rings) return false;
     const Vec3 half = axis * shape.half_height;
@@ -45,7 +46,7 @@ bool add_rings(const Convex& shape, Vec3 middle, Vec3 axis, RollingBody& body) {
     return false;
 }
 
-// The body as rings, if all its pieces are round about one axis; balls roll as well without.
+// The body as rings, if all its pieces are round about one axis; balls roll without rings.
 std::optional<RollingBody> rolling_body(const SubstepAccess& world, std::uint32_t body) {
     const BodyRecord& record = world.rigid.record(body);
     if (!record.is_round || record.is_ball) return std::nullopt;
@@ -67,7 +68,7 @@ std::optional<RollingBody> rolling_body(const SubstepAccess& world, std::uint32_
     return rolling;
 }
 
-// Whether the contact's normal is that of a face of the ground: beside it an edge or a curve would roll off otherwise.
+// Whether the contact's normal is that of a face of the ground: on an edge or a curve the body would roll differently.
 bool lies_on_face(const SubstepAccess& world, std::uint32_t ground, std::uint32_t piece, Vec3 up) {
     const CollisionShape::Data& shape = world.rigid.record(ground).shape->data();
     if (shape.is_plane) return true;
@@ -76,7 +77,7 @@ bool lies_on_face(const SubstepAccess& world, std::uint32_t ground, std::uint32_
     return has_aligned_face(place(shape.pieces[piece], pose, pose.position), up, same_normal);
 }
 
-// What still ground the island's contacts all lie on; none if they differ or resist rolling.
+// The still ground that all of the island's contacts lie on; none if they differ or resist rolling.
 std::optional<DeepestPoint> deepest_on_flat_ground(const SubstepAccess& world, std::span<const std::uint32_t> contacts,
                                                    std::uint32_t body) {
     std::optional<DeepestPoint> deepest;

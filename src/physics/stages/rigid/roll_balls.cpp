@@ -36,7 +36,7 @@ bool may_roll(const RollAccess& world, std::uint32_t body) {
            constants.angular_damping == 0;
 }
 
-// What touches already and does not bounce is no impact.
+// A contact that touches already and does not bounce is no impact.
 void leave_to_rolling(ContactSummary& summary) {
     summary.was_touching = true;
     summary.bounces = false;
@@ -65,7 +65,7 @@ std::uint32_t root_of(BallMemory& memory, std::uint32_t ball) {
     return ball;
 }
 
-// Whom each ball touches: still ground, other balls, or what it cannot be followed beside.
+// What each ball touches: still ground, other balls, or bodies beside which it cannot be followed.
 void list_neighbours(const RollAccess& world, BallMemory& memory) {
     memory.pairs.clear();
     const auto add_ground = [&](std::uint32_t body, std::uint32_t other, std::uint32_t contact) {
@@ -99,7 +99,7 @@ void list_neighbours(const RollAccess& world, BallMemory& memory) {
 
 bool is_followed(const BallMemory::Candidate& candidate) { return candidate.is_free && !candidate.contacts.empty(); }
 
-// Those that no other ball is near.
+// Balls without other balls within reach.
 void roll_single_balls(const RollAccess& world, BallMemory& memory) {
     constexpr std::size_t min_parallel_count = 64;  // balls: below, waking the workers costs more
     for (const BallMemory::Pair& pair : memory.pairs) {
@@ -116,7 +116,7 @@ void roll_single_balls(const RollAccess& world, BallMemory& memory) {
     });
 }
 
-// What the collisions of a cluster leave in the contact and the account of the step.
+// Writes the collisions of a cluster to the contacts and the account of the step.
 void note_collision(const RollAccess& world, const BallMemory::Pair& pair) {
     if (pair.impulse == Vec3{}) return;
     Contact& contact = world.contacts.list[pair.contact];

@@ -77,7 +77,7 @@ void list_carriers(const SubstepAccess& world, std::vector<std::uint32_t>& carri
     }
 }
 
-// Whether a kinematic body may give the island energy by a contact.
+// Whether a kinematic body may add energy to the island by a contact.
 bool is_pushed(const SubstepAccess& world, const Island& island) {
     const auto pushes = [&](std::uint32_t body) {
         const BodyState& state = world.rigid.motion[body];
@@ -89,8 +89,8 @@ bool is_pushed(const SubstepAccess& world, const Island& island) {
     });
 }
 
-// Whether the inertia of some body turns with it in this step: then the contacts' frozen axes are not its own, and what
-// held the last step may push in this one.
+// Whether the inertia of some body turns with it in this step: then the contacts' frozen axes are not the body's, and
+// impulses that held in the last step may push in this one.
 bool spins(const SubstepAccess& world, const Island& island) {
     const auto bodies = bodies_of(world, island);
     return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
@@ -133,14 +133,14 @@ void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& group) 
     for (const std::uint32_t body : bodies) world.ledger->note_kept_fraction(body, solver.kept_fraction(body));
 }
 
-// What the report asks of each contact; the wide solver notes its own.
+// Stores what the report needs of each contact; the wide solver stores that of its own contacts.
 void note_outcomes(const SubstepAccess& world, const Island& island) {
     for (const std::uint32_t contact : contacts_of(world, island)) {
         world.contacts.summaries[contact].touches = is_touching(world.contacts.list[contact]);
     }
 }
 
-// Whether the last step's impulses held the island and nothing of it has changed since.
+// Whether the last step's impulses held the island, and nothing in it has changed since.
 bool is_still_held(const SubstepAccess& world, const Island& island) {
     const auto bodies = bodies_of(world, island);
     const auto contacts = contacts_of(world, island);
@@ -161,7 +161,7 @@ void note_held(const SubstepAccess& world, const Island& island) {
 
 // Whether the island was solved directly; else the sweeps have to.
 bool solve_directly(const SubstepAccess& world, const Island& island) {
-    // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
+    // Impulses are scaled as those of the sweeps, so that either solver can continue from the other.
     const int parts = plan_of(world, island).substeps;
     const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
     if (is_still_held(world, island)) {
@@ -184,7 +184,7 @@ bool solve_directly(const SubstepAccess& world, const Island& island) {
     return true;
 }
 
-// The systems of islands that are no more, or sleep, are dropped.
+// The systems of islands that are gone or asleep are dropped.
 void set_up_joint_systems(const SubstepAccess& world) {
     std::map<std::uint32_t, JointSystem> last = std::move(world.substeps.joint_systems);
     world.substeps.joint_systems.clear();
@@ -214,7 +214,7 @@ void solve_jointed(const SubstepAccess& world, const std::vector<Island>& island
     }
 }
 
-// Solves what is solved directly, and tells how the others have to be.
+// Solves the islands that are solved directly; says how the others are to be solved.
 const IslandsBySolver& sort_islands(const SubstepAccess& world) {
     EMBODY_ZONE("choose solvers");
     IslandsBySolver& sorted = world.substeps.islands;
@@ -273,7 +273,7 @@ void for_each_contact(const SubstepAccess& world, const std::vector<Island>& isl
 
 // Free bodies and jointed ones get half of the forces before the drift and half after it, which is exact for a constant
 // force and symplectic for joints. Where there are contacts all of it comes first: resting bodies then have the
-// velocity that the contacts must hold, and the warm start fits.
+// velocity that the contacts must stop, and the warm start fits.
 bool has_split_kick(const Island& island) { return island.contact_count == 0; }
 
 void kick_before_drift(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
@@ -304,7 +304,7 @@ void drift_all(const SubstepAccess& world, const std::vector<Island>& islands, d
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
             BodyState& state = world.rigid.motion[body];
 
-            // A body near others that nothing touched: its mean velocity lies half a kick behind.
+            // A body that touched nothing: its mean velocity is half a kick behind.
             const bool is_free = state.linear_velocity == world.substeps.kicked_velocity[body];
             if (!has_split_kick(island) && is_free)
                 state.center -= world.rigid.constants[body].acceleration * (h * h / 2);
@@ -331,7 +331,7 @@ bool is_state_finite(const BodyState& state) {
            is_finite(state.angular_velocity);
 }
 
-// What was no number in a lost body leaves none in what it touched.
+// Removes non-finite impulses of a lost body from what it touched.
 void clear_traces_of_lost(const SubstepAccess& world) {
     for (std::uint32_t body = 0; body < world.rigid.bodies.slot_count(); ++body) {
         if (!world.rigid.is_used(body) || world.rigid.is_dynamic(body) || is_state_finite(world.rigid.motion[body]))
@@ -361,7 +361,7 @@ bool is_lost(const BodyState& state) {
     return !is_state_finite(state) || !(length(state.center) < farthest);
 }
 
-// A body that left the finite numbers would take all it touches along: it is put back and switched off.
+// A body with a non-finite state would spread it to all that it touches: it is put back and disabled.
 void freeze_lost_bodies(const SubstepAccess& world) {
     std::atomic<bool> lost_any{false};
     for_each_awake(world, [&](std::uint32_t body) {
@@ -389,8 +389,9 @@ void freeze_lost_bodies(const SubstepAccess& world) {
     clear_traces_of_lost(world);
 }
 
-// Sweeps over joints and contacts by turns may come to no end, and what they miss must not swing up. A substep does not
-// end with more energy than the forces gave; before the drift, bodies may also be parting and be mended.
+// Alternating sweeps over joints and contacts may not converge, and oscillations of their error must not grow. A
+// substep does not end with more energy than the forces add; before the drift, energy may also come from bodies that
+// are separated and errors that are corrected.
 class EnergyBounds {
 public:
     EnergyBounds(const SubstepAccess& world, const std::vector<Island>& islands)
@@ -422,7 +423,7 @@ private:
                 world_.ledger->note_scaled(body, fraction);
             }
         }
-        // Impulses that gave so much too much are no guess for the next ones.
+        // Impulses that added so much energy are no guess for the next ones.
         if (fraction > view_.settings.warm_start_kept_fraction) return;
         for (const std::uint32_t index : contacts_of(world_, bound.island)) {
             Contact& contact = world_.contacts.list[index];
@@ -450,7 +451,7 @@ void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bo
     });
 }
 
-// What joints and contacts hold: one constraint after the other, in double. Moves the kinematic bodies too.
+// Islands with joints and contacts: one constraint after the other, in double. Moves the kinematic bodies too.
 void solve_one_by_one(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
     EMBODY_ZONE("solve one by one");
     world.substeps.prepared_contacts.clear();
@@ -461,7 +462,7 @@ void solve_one_by_one(const SubstepAccess& world, const std::vector<Island>& isl
     world.substeps.kicked_velocity.resize(world.rigid.motion.size());
     EnergyBounds energy_bounds(world, islands);
     for (int k = 1; k <= world.settings.substeps; ++k) {
-        // Forces, constraints that also mend positions, motion.
+        // Forces, constraints that also correct positions, motion.
         kick_before_drift(world, islands, h);
         energy_bounds.note();
         solve_islands(world, islands, SolvePhase::position, h, k * h);
@@ -481,7 +482,7 @@ void solve_one_by_one(const SubstepAccess& world, const std::vector<Island>& isl
     for (const Island& island : islands) note_outcomes(world, island);
 }
 
-// What joints hold, at the step's start.
+// Velocities of jointed bodies at the step's start.
 void note_held_starts(const SubstepAccess& world) {
     std::vector<SubstepMemory::HeldStart>& starts = world.substeps.held_starts;
     starts.clear();
@@ -495,7 +496,7 @@ void note_held_starts(const SubstepAccess& world) {
     }
 }
 
-// How joints and contacts have accelerated it since.
+// Acceleration of these by joints and contacts since then.
 void note_held_accelerations(const SubstepAccess& world) {
     std::vector<ImpactMemory::HeldAcceleration>& accelerations = world.impacts.held_accelerations;
     accelerations.clear();

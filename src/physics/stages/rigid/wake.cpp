@@ -46,8 +46,8 @@ void list_awake(const WakeAccess& world) {
     }
 }
 
-// ½ ρ c A |u| u of the air that goes by with velocity u, held back so that in one step it takes away no more than all:
-// alone it has u go to u/(1 + k |u| h), which is exact, with k = ρ c A/2m.
+// ½ ρ c A |u| u of the air that goes by with velocity u, limited so that in one step it takes away at most all of u:
+// alone it takes u to u/(1 + k |u| h), which is exact, with k = ρ c A/2m.
 Vec3 drag_of_air(const WakeAccess& world, std::uint32_t body, const Wind& wind) {
     const double half_density_area = world.settings.air_density / 2 * world.rigid.record(body).definition.drag_area;
     const Vec3 u = wind.at(world.rigid.motion[body].center) - world.rigid.motion[body].linear_velocity;
@@ -55,7 +55,7 @@ Vec3 drag_of_air(const WakeAccess& world, std::uint32_t body, const Wind& wind) 
     return (strength / (1 + strength * world.rigid.motion[body].inverse_mass * world.settings.time_step)) * u;
 }
 
-// Sleepers that the wind pushes otherwise than when they fell asleep: some in each step, all in turn.
+// Sleepers on which the wind's force has changed since they fell asleep: some are checked in each step, all in turn.
 void wake_by_wind(const WakeAccess& world, const Wind& wind) {
     const OptimizationSettings& settings = world.settings.solver.optimization;
     const std::uint32_t turns = settings.wake_wind_steps;
@@ -111,7 +111,7 @@ void wake_group_of(const WakeAccess& world, std::uint32_t body) {
     world.activity.sleepers.erase(found);
 }
 
-// While no step comes the same bodies may be named again and again, by hands that move them.
+// Between steps the same bodies may be named again and again, as a user moves them by hand.
 void wake_later(ActivityState& activity, std::uint32_t body) {
     activity.to_wake.push_back(body);
     const std::size_t slots = activity.sleep.size();
@@ -134,8 +134,8 @@ void wake_around(const WakeAccess& world, std::uint32_t body) { wake_around(worl
 
 void wake_touching(const WakeAccess& world, std::uint32_t body) {
     wake_later(world.activity, body);
-    // What is awake sleeps no sooner than the body beside it: the search is for sleepers alone. Without them a scene of
-    // 100,000 bodies would be sorted again for each that is added.
+    // An awake body sleeps no sooner than the body beside it: so only sleepers are searched for. Without sleepers there
+    // is no search: else a scene of 100,000 bodies would be sorted again for each body that is added.
     if (!world.rigid.record(body).shape || world.activity.sleepers.empty()) return;
     const Bounds bounds = enlarged(world.rigid.record(body).shape->bounds(world.rigid.pose(body)),
                                    world.settings.solver.optimization.wake_reach);
@@ -148,7 +148,7 @@ void wake_touching(const WakeAccess& world, std::uint32_t body) {
 void wake_around(const WakeAccess& world, std::span<const std::uint32_t> bodies) {
     for (const std::uint32_t body : bodies) wake_touching(world, body);
 
-    // Of several bodies in one walk over the joints.
+    // For several bodies in one pass over the joints.
     const std::vector<bool> is_one = bodies.size() > 1 ? marked(world.rigid, bodies) : std::vector<bool>{};
     const auto is_meant = [&](std::uint32_t body) { return is_one.empty() ? body == bodies[0] : is_one[body]; };
     for (std::uint32_t i = 0; i < world.joints.records.slot_count() && !bodies.empty(); ++i) {

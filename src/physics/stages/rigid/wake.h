@@ -14,7 +14,7 @@ namespace embody::physics::stages {
 /// Wakes the sleeping group of a body, if it sleeps; its contacts serve as warm start of the next step.
 void wake_group_of(const WakeAccess& world, std::uint32_t body);
 
-/// Lists the bodies that move and takes their forces from what they were told.
+/// Lists the bodies that move and takes their forces from those that users set.
 void gather_awake(const WakeAccess& world);
 
 /// Asks for the group of a body (by its slot) to be awake in the next step.
@@ -27,7 +27,7 @@ void wake_touching(const WakeAccess& world, std::uint32_t body);
 void wake_around(const WakeAccess& world, std::uint32_t body);
 void wake_around(const WakeAccess& world, std::span<const std::uint32_t> bodies);
 
-/// By slot, whether it is one of these.
+/// By slot: whether the body is one of these.
 std::vector<bool> marked(const RigidState& rigid, std::span<const std::uint32_t> bodies);
 
 }  // namespace embody::physics::stages

@@ -34,8 +34,8 @@ Bounds turned_bounds(const PairsAccess& world, std::uint32_t body, const Bounds&
     return bounds;
 }
 
-// The same, closer for θ < 1: a point leaves the straight line between its first and its last place by at most r θ²/8,
-// and gyroscopic torque, which changes ω by less than ω² dt, puts its last place off by less than r θ²/3.
+// The same with tighter bounds for θ < 1: a point leaves the straight line between its first and its last place by at
+// most r θ²/8, and gyroscopic torque, which changes ω by less than ω² dt, puts its last place off by less than r θ²/3.
 Bounds close_turned_bounds(const PairsAccess& world, std::uint32_t body, const Bounds& now, double angle) {
     const BodyState& state = world.rigid.motion[body];
     const BodyRecord& record = world.rigid.record(body);
@@ -45,7 +45,7 @@ Bounds close_turned_bounds(const PairsAccess& world, std::uint32_t body, const B
     return enlarged(bounds, record.reach * angle * angle / 2);
 }
 
-// Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
+// Lists which of a range of the awake bodies have left their bounds, and the new bounds that they need.
 void list_leaving(const PairsAccess& world, IndexRange range, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
     for (std::size_t i = range.first; i < range.last; ++i) {
@@ -58,7 +58,7 @@ void list_leaving(const PairsAccess& world, IndexRange range, std::vector<Leavin
         const Vec3 motion =
             world.rigid.motion[body].linear_velocity * dt + world.rigid.constants[body].acceleration * (dt * dt / 2);
 
-        // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
+        // Bounds include the whole path: bodies on it must be pairs before the body gets there.
         const Bounds now = record.shape->bounds(world.rigid.pose(body));
         const double angle = record.is_ball ? 0 : length(world.rigid.motion[body].angular_velocity) * dt;
         const auto swept = [&motion](Bounds bounds) {
@@ -78,14 +78,14 @@ void list_leaving(const PairsAccess& world, IndexRange range, std::vector<Leavin
 }  // namespace
 
 void find_pairs(const PairsAccess& world) {
-    // Bounds of what moves, and how far it will.
+    // Bounds of moving bodies, and their travel.
     world.contacts.leaving.resize(static_cast<std::size_t>(world.workers.workers()));
     for (std::vector<LeavingBody>& leaving : world.contacts.leaving) leaving.clear();
     parallel_for_awake(world, [&](int worker, IndexRange range) {
         list_leaving(world, range, world.contacts.leaving[static_cast<std::size_t>(worker)]);
     });
 
-    // In the order of the bodies, whoever looked at them.
+    // In the order of the bodies, whichever worker had them.
     for (const std::vector<LeavingBody>& leaving : world.contacts.leaving) {
         for (const LeavingBody& l : leaving) world.contacts.broad_phase.move(l.body, l.bounds, l.motion);
     }

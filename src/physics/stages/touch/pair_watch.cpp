@@ -14,10 +14,10 @@ namespace embody::physics::stages {
 
 namespace {
 
-// A body put into a slot counts as one that went so far, m; so no pair is left alone for longer.
+// m: travel that counts for a body that is put into a slot; no pair is skipped for more than this.
 constexpr double max_displacement = 1;
 
-// Where free fall takes dynamic bodies relative to immovable ones in the step, m; it is in no body's own bound.
+// Displacement of dynamic bodies relative to immovable ones in the step by free fall, m; it is in no body's own bound.
 double common_fall(const TouchAccess& world) {
     const double dt = world.settings.time_step;
     return length(world.settings.gravity) * dt * dt / 2;
@@ -34,7 +34,7 @@ std::uint32_t take_record(TouchMemory& memory) {
     return record;
 }
 
-// In place, both being sorted: what is gone is taken out from the front on, what is new put in from the back on.
+// In place, both being sorted: removed pairs are taken out from the front on, new ones inserted from the back on.
 void follow_broad_phase(const TouchAccess& world) {
     TouchMemory& memory = world.contacts.touch;
     if (memory.watches_version == world.contacts.broad_phase.pairs_version()) return;

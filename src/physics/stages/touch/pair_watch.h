@@ -9,28 +9,28 @@
 
 namespace embody::physics::stages {
 
-// Most pairs of the broad phase are apart. A pair that nothing is found of is left alone until the ways that the two
-// bodies have gone since, and may go in the step, add up to the gap it had: whoever asks reads two numbers of each pair
-// and one of each body.
+// Most pairs of the broad phase are apart. A pair without contacts is skipped until the travel of the two bodies since
+// then, and their maximum travel in the step, add up to the gap that it had: a query reads two numbers of each pair and
+// one of each body.
 
-/// Brings the watches in step with the pairs of the broad phase, and with the contacts where others have changed them.
+/// Synchronises the watches with the pairs of the broad phase, and with the contacts where others have changed them.
 /// Contacts of pairs that are gone are dropped.
 void update_watches(const TouchAccess& world);
 
 /// Lists the pairs that can have contacts or wake a sleeper; while no body sleeps these are all.
 void list_live_pairs(const TouchAccess& world);
 
-/// Tells the touch stage of a body that was put into the slot. What pairs know of the one before does not hold.
+/// Tells the touch stage of a body that was put into the slot. What is stored for pairs of the body before is invalid.
 void introduce_body(const RigidState& rigid, std::uint32_t body, TouchMemory& memory);
 
-/// The step's motion of awake bodies starts here: how contacts change is told from here on. Adds the way since the last
-/// start to their paths and tells how far they may go in this step.
+/// Starts the step's motion of awake bodies: changes of contacts are measured from here on. Adds their travel since the
+/// last start to their paths and finds their maximum travel in this step.
 void start_motion(const TouchAccess& world);
 
 /// Lists the pairs that must be looked at in this step: those with contacts and those that may get some.
 void list_near_pairs(const TouchAccess& world);
 
-/// Leaves a pair without contacts alone until its bodies have gone `way` (m, of both together).
+/// Skips a pair without contacts until the travel of its bodies has reached `way` (m, sum of both).
 void leave_alone(const TouchAccess& world, PairWatch& watch, double travel);
 
 /// Calls visit(watch, its place) for each live pair, in their order.

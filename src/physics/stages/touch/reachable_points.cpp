@@ -12,7 +12,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-// Velocity of the surface's place (not of its matter) at a point of the piece: turning about the axis of what rolls
+// Velocity of the surface's place (not of its matter) at a point of the piece: turning about the axis of a rolling body
 // moves none.
 Vec3 surface_velocity(const TouchAccess& world, std::uint32_t body, std::uint32_t piece, bool is_round, Vec3 point) {
     const BodyState& state = world.rigid.motion[body];

@@ -10,10 +10,10 @@
 
 namespace embody::physics::stages {
 
-/// Takes those points out of the contacts of what rolls that will not come within CollisionSettings::contact_margin in
-/// this step: a wheel that rolls brings nothing of its rim to the ground but its lowest point, however far it goes.
-/// They would draw the place where friction acts up to the axle. The deepest point of each contact stays. Returns the
-/// least separation of what was left out, m; 1e300 if nothing was.
+/// Removes the points from the contacts of a rolling body that will not come within CollisionSettings::contact_margin
+/// in this step: a wheel that rolls brings nothing of its rim to the ground but its lowest point, however far it goes.
+/// Such points would move the place where friction acts up to the axle. The deepest point of each contact stays.
+/// Returns the minimum separation of the removed points, m; 1e300 if there are none.
 double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds);
 
 }  // namespace embody::physics::stages

@@ -19,7 +19,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-// Contacts tell that all corners near to them are among them until their bodies have moved so far.
+// Travel up to which contacts are known to hold all corners within their margin, m.
 static_assert(CollisionSettings{}.follow_travel == Manifold::whole_travel);
 
 const CollisionSettings& collision_settings(const TouchAccess& world) { return world.settings.solver.collision; }
@@ -38,8 +38,8 @@ bool is_moving(const TouchAccess& world, std::uint32_t body) {
            (world.rigid.motion[body].linear_velocity != Vec3{} || world.rigid.motion[body].angular_velocity != Vec3{});
 }
 
-// A ball has one point of contact, which does not jump to another corner: a part of its size is far enough. Grains of
-// millimetres would have most of their contacts with others that they do not touch.
+// A ball has one point of contact, which does not jump to another corner: a fraction of its size is far enough. Grains
+// of millimetres would have most of their contacts with others that they do not touch.
 double within_ball(const TouchAccess& world, double distance, const TouchBody& a, const TouchBody& b) {
     const double fraction = collision_settings(world).ball_margin_fraction;
     if (a.is_ball) distance = std::min(distance, fraction * a.size);
@@ -47,13 +47,13 @@ double within_ball(const TouchAccess& world, double distance, const TouchBody& a
     return distance;
 }
 
-// How near surfaces are looked at whatever their speed, m.
+// Gap up to which surfaces are looked for whatever their speed, m.
 double base_margin_of(const TouchAccess& world, const BroadPhase::Pair& pair) {
     return within_ball(world, collision_settings(world).contact_margin, world.contacts.touch.bodies[pair.a],
                        world.contacts.touch.bodies[pair.b]);
 }
 
-// How far the surfaces can approach each other within the step: the margin of the narrow phase.
+// Maximum approach of the surfaces within the step: the margin of the narrow phase.
 double margin_of(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
     const double dt = world.settings.time_step;
     const TouchBody &ta = world.contacts.touch.bodies[a], &tb = world.contacts.touch.bodies[b];
@@ -61,7 +61,7 @@ double margin_of(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
     const double travel =
         (length(velocity) + (ta.turning + tb.turning)) * dt + length(tb.acceleration - ta.acceleration) * dt * dt / 2;
 
-    // Beyond the size of the movable body a contact normal says little; the continuous stage takes over there.
+    // At gaps larger than the movable body a contact normal is unreliable; the continuous stage takes over there.
     double size = 1e300;
     if (ta.yields) size = std::min(size, ta.size);
     if (tb.yields) size = std::min(size, tb.size);
@@ -106,7 +106,7 @@ void wake_touched(const TouchAccess& world, std::vector<Manifold>& manifolds) {
     for (const std::uint32_t live : world.contacts.touch.live) {
         if (!wake_if_touched(world, pairs[live], manifolds)) continue;
 
-        // What woke may wake more: any later pair counts now.
+        // Woken bodies may wake more: any later pair counts now.
         for (std::size_t i = live + 1; i < pairs.size(); ++i) wake_if_touched(world, pairs[i], manifolds);
         gather_awake(world);
         update_watches(world);
@@ -115,8 +115,8 @@ void wake_touched(const TouchAccess& world, std::vector<Manifold>& manifolds) {
     }
 }
 
-/// A pair seen from its larger body: turning that one moves surface points the least. A ball's own turn does not count:
-/// it is seen from the other body, and two balls in the world's axes.
+/// A pair in the frame of its larger body: turning that one moves surface points the least. A ball's own turn does not
+/// count: its contacts are in the frame of the other body, those of two balls in the world's axes.
 struct RelativePose {
     Vec3 center;
     Quat rotation;
@@ -136,7 +136,7 @@ RelativePose relative_pose(const TouchAccess& world, const BroadPhase::Pair& pai
     return {center, rotation, {larger.rotation, from_b}, has_ball};
 }
 
-// Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
+// Maximum displacement of a surface point of the smaller body relative to the larger one since they were compared.
 double moved_since(const TouchAccess& world, const BroadPhase::Pair& pair, const PairRecord& record,
                    const RelativePose& now) {
     if (now.has_ball) return distance(now.center, record.relative_center);
@@ -146,7 +146,8 @@ double moved_since(const TouchAccess& world, const BroadPhase::Pair& pair, const
     return distance(now.center, record.relative_center) + 2 * sine * reach;
 }
 
-// Lists of contacts are most of a world's memory. They grow by half: by less, what they leave behind adds up to more.
+// Lists of contacts are most of a world's memory. They grow by half: with smaller steps the freed blocks add up to
+// more.
 template <class Item>
 void resize_list(std::vector<Item>& list, std::size_t size) {
     if (size > list.capacity()) list.reserve(size + size / 2);
@@ -168,12 +169,12 @@ using OldContacts = std::span<const Contact>;
 struct PairNow {
     BroadPhase::Pair pair;
     RelativePose pose;
-    double margin = 0;  ///< how near the surfaces must be to meet within the step, m
+    double margin = 0;  ///< maximum gap that can close within the step, m
     double moved = 0;   ///< since the pair was compared, m
     OldContacts old;
 };
 
-// Whether the last comparison still tells all: same bodies, hardly moved, and searched as far as now needed.
+// Whether the last comparison is still valid: same bodies, hardly moved, and searched as far as now needed.
 bool may_follow(const TouchAccess& world, const PairRecord& record, const PairNow& now) {
     const TouchBody &a = world.contacts.touch.bodies[now.pair.a], &b = world.contacts.touch.bodies[now.pair.b];
     if (record.version_a != a.version || record.version_b != b.version) return false;
@@ -182,8 +183,8 @@ bool may_follow(const TouchAccess& world, const PairRecord& record, const PairNo
     return now.old.empty() || now.moved <= follow_travel_of(collision_settings(world), a, b, record.is_whole);
 }
 
-// A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
-// name goes on from an old contact of nearly the same normal that nobody else goes on from.
+// A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: a contact with
+// a new name takes over an old contact of nearly the same normal that no other one takes over.
 void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_surface, const SolverSettings& settings) {
     const auto piece_of = [&](const Contact& c) { return a_is_surface ? c.piece_b : c.piece_a; };
     const auto is_named = [](const Contact& c, std::span<const Contact> others) {
@@ -295,8 +296,8 @@ FollowedPair followed_pair(const TouchAccess& world, const PairRecord& record, c
             .has_ball = now.has_ball};
 }
 
-// A bouncing contact whose load changes no velocity by more than rounding carries none: bodies that only touch, as the
-// balls of a rack do, are as free as those apart.
+// A bouncing contact whose load changes no velocity by more than rounding carries no load: bodies that only touch, as
+// the balls of a rack do, are as free as separated ones.
 void clear_rounding_load(const TouchAccess& world, Contact& contact) {
     constexpr double slightest_load = 1e-6;  // m/s; rounding leaves 1e-9, a step of gravity gives 0.16
     if (!contact.was_loaded || !contact.bounces) return;
@@ -328,7 +329,7 @@ void follow_contacts(const TouchAccess& world, const PairTouch& touch, const Fol
     }
 }
 
-// Whether the pair's contacts are where they were in the last step, since its bodies are.
+// Whether the pair's contacts are where they were in the last step, since its bodies have not moved.
 bool may_keep(const TouchAccess& world, const PairWatch& watch, const PairRecord& record) {
     const TouchBody &a = world.contacts.touch.bodies[watch.pair.a], &b = world.contacts.touch.bodies[watch.pair.b];
     return a.stands && b.stands && watch.count > 0 && record.contact_count == watch.count &&
@@ -343,7 +344,7 @@ void keep_contacts(const TouchAccess& world, const PairTouch& touch) {
     }
 }
 
-// One of the two must be able to answer an impulse, and neither may sleep.
+// One of the two must be movable, and neither may sleep.
 bool may_touch(const TouchAccess& world, const BroadPhase::Pair& pair) {
     const std::vector<TouchBody>& bodies = world.contacts.touch.bodies;
     if (!bodies[pair.a].yields && !bodies[pair.b].yields) return false;
@@ -352,7 +353,7 @@ bool may_touch(const TouchAccess& world, const BroadPhase::Pair& pair) {
     return may_collide(world, pair.a, pair.b);
 }
 
-// Decides what a pair has in this step: what it had follows its bodies, or is found anew.
+// Decides which contacts a pair has in this step: the old ones follow its bodies, or they are found anew.
 void touch_pair(const TouchAccess& world, PairTouch& touch, std::uint8_t finder, TouchMemory::Worker& worker) {
     PairWatch& watch = world.contacts.touch.watches[touch.watch];
     if (!may_touch(world, watch.pair)) return;
@@ -392,9 +393,9 @@ void move_kept(const TouchAccess& world, const PairTouch& touch) {
     move(world.contacts.summaries);
 }
 
-// Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. All move
-// within one list: those that move down in ascending order, then those that move up in descending order, never come to
-// lie on one that has yet to move.
+// Gives each pair's contacts their place in the order of the pairs, which does not depend on the worker that found
+// them. All move within one list: those that move down in ascending order, then those that move up in descending order,
+// so that none overwrites one that has yet to move.
 void lay_out(const TouchAccess& world) {
     EMBODY_ZONE("lay out contacts");
     std::vector<PairTouch>& pairs = world.contacts.touch.pairs;
@@ -416,7 +417,7 @@ void lay_out(const TouchAccess& world) {
         if (keeps(*t) && t->next_first > t->first) move_kept(world, *t);
     }
 
-    // What is new fills the places between.
+    // New contacts fill the places between.
     for (const PairTouch& touch : pairs) {
         if (touch.next_count == touch.count) continue;
         world.contacts.touch.watches[touch.watch].count = touch.next_count;
@@ -430,7 +431,7 @@ void lay_out(const TouchAccess& world) {
     world.contacts.summaries.resize(total);
 }
 
-// Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them. Some
+// Calls work(worker, range) for ranges of the pairs to look at, on all workers where there are enough of them. Some
 // pairs take a hundred times as long as others, so each worker takes the next few when it is done: first of its own
 // part, whose contacts it had in the last step, then of the others'.
 template <class Work>
@@ -458,7 +459,7 @@ void parallel_for_pairs(const TouchAccess& world, Work work) {
     });
 }
 
-// Records lie anywhere: they are asked for while the pairs before are looked at.
+// Records are scattered in memory: they are prefetched while earlier pairs are processed.
 constexpr std::size_t fetched_ahead = 4;
 void fetch(const TouchMemory& memory, const PairTouch& touch) {
     const PairRecord& record = memory.records[memory.watches[touch.watch].record];
@@ -475,7 +476,7 @@ void find_contacts(const TouchAccess& world) {
     start_motion(world);
     wake_touched(world, memory.workers[0].manifolds);
 
-    // What each near pair has.
+    // Finds the contacts of each pair that is due.
     list_near_pairs(world);
     world.contacts.summaries.resize(world.contacts.list.size());
     for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
