@@ -17,11 +17,11 @@ enum class BodyKind : std::uint8_t { static_body, kinematic_body, dynamic_body }
 /// The paper's sleeping states: red, green and gray in its figures.
 enum class SleepState : std::uint8_t { active, wants_to_sleep, asleep };
 
-/// Mass of a dynamic body. What is left open is computed from the shape: mass = density × volume, centre and inertia
-/// of a homogeneous solid (scaled to the mass where one is given).
+/// Mass of a dynamic body. What is not given is computed from the shape: mass = density × volume, centre and inertia of
+/// a homogeneous solid (scaled to the mass where one is given).
 struct MassDefinition {
     std::optional<double> mass;          ///< kg, 1e-6 … 1e9
-    double density = 1000;               ///< kg/m³, used where mass is open, > 0
+    double density = 1000;               ///< kg/m³, used where the mass is not given, > 0
     std::optional<Vec3> center_of_mass;  ///< in the body's frame, m
     std::optional<Mat3> inertia;         ///< about the centre of mass, in the body's axes, kg m², symmetric, positive
                                          ///< definite, each principal moment <= the sum of the other two
@@ -36,13 +36,14 @@ struct BodyDefinition {
     Vec3 angular_velocity;  ///< world axes, rad/s
     MassDefinition mass;
     Material material;
-    double linear_damping = 0;                         ///< 1/s, 0 … 100
-    double angular_damping = 0;                        ///< 1/s, 0 … 100
-    double drag_area = 0;                              ///< that meets the air, times its coefficient, m², 0 … 1e8
-    double gravity_factor = 1;                         ///< -10 … 10
-    Vec3 force;                                        ///< constant, world axes, at the centre of mass, N
-    Vec3 torque;                                       ///< constant, world axes, N m
-    double sleep_energy_per_mass = 0.5 * 0.03 * 0.03;  ///< J/kg: quieter than this for half a second may sleep
+    double linear_damping = 0;   ///< 1/s, 0 … 100
+    double angular_damping = 0;  ///< 1/s, 0 … 100
+    double drag_area = 0;        ///< area that meets the air times the drag coefficient, m², 0 …
+                                 ///< 1e8
+    double gravity_factor = 1;   ///< -10 … 10
+    Vec3 force;                  ///< constant, world axes, at the centre of mass, N
+    Vec3 torque;                 ///< constant, world axes, N m
+    double sleep_energy_per_mass = 0.5 * 0.03 * 0.03;  ///< J/kg: a body with less for half a second may sleep
     bool allow_sleep = true;
     bool start_asleep = false;
     bool enabled = true;                ///< a disabled body neither moves nor collides

@@ -21,11 +21,13 @@ struct SoftSolid {
     double youngs_modulus = 1e5;                                    ///< Pa, 100 … 1e12
     double poisson_ratio = 0.3;                                     ///< -0.9 … 0.495
     double rayleigh_damping = 0;                                    ///< stiffness-proportional, s, 0 … 100
-    double yield_stress = std::numeric_limits<double>::infinity();  ///< von Mises, Pa, > 0: from here it stays deformed
-    double internal_pressure = 0;                                   ///< above that of the air around, Pa, 0 … 1e8
+    double yield_stress = std::numeric_limits<double>::infinity();  ///< von Mises, Pa, > 0: beyond it the solid stays
+                                                                    ///< deformed
+    double internal_pressure = 0;  ///< pressure above that of the air around, Pa, 0 …
+                                   ///< 1e8
 };
 
-/// A sheet of triangles: cloth, paper, foil. Its nodes at rest lie as it was cut.
+/// A sheet of triangles: cloth, paper, foil. The nodes' places at rest are the cut.
 struct Cloth {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< nodes, with area
     double area_density = 0.2;                            ///< kg/m², 1e-4 … 1000
@@ -46,7 +48,7 @@ struct Rope {
     double twist_rigidity = 1e-3;                                    ///< GJ, N m², 1e-12 … 1e9
     double rayleigh_damping = 0;                                     ///< stiffness-proportional, s, 0 … 100
     double break_tension = std::numeric_limits<double>::infinity();  ///< N, > 0
-    double slack = 0;  ///< how much longer it is at rest than the way along its nodes: a share of that, 0 … 10
+    double slack = 0;  ///< extra length at rest, as a fraction of the length along the nodes, 0 … 10
 };
 
 /// A node held to a point of a body.
@@ -57,7 +59,7 @@ struct Attachment {
 };
 
 /// A node of a sheet or rope held to a point of another deformable, which lies between up to three of its nodes. Where
-/// the two are apart they are drawn together.
+/// the two are apart, the tie draws them together.
 struct Tie {
     std::uint32_t node = 0;
     DeformableHandle other;
@@ -65,8 +67,8 @@ struct Tie {
     std::array<double, 3> weight{1, 0, 0};  ///< of these, each 0 … 1, together 1; nodes of weight 0 do not count
 };
 
-/// A rope's direction, held by what holds its node: the world a pinned one, its body an attached one. It bends from
-/// there on as a clamped rod, and is twisted by what its clamps turn against each other.
+/// A rope's direction that is held by what holds its node: the world for a pinned node, the body for an attached one.
+/// The rope bends from there on as a clamped rod, and is twisted where its clamps turn against each other.
 struct Clamp {
     std::uint32_t node = 0;
     Vec3 direction{1, 0, 0};  ///< unit, along the rope towards its later nodes; in the world's or the body's frame
@@ -77,23 +79,23 @@ struct Clamp {
 struct RopeTwist {
     std::uint32_t from = 0, to = 0;  ///< nodes
     double angle = 0;                ///< of the second against the first, about the rope's direction, rad; turns count
-    double moment = 0;               ///< N m: it turns the second by -moment and the first by moment
+    double moment = 0;               ///< N m: acts on the second clamp as -moment and on the first as moment
 };
 
-/// A body that changes its form: nodes, and elastic matter between them. Lengths in m, in the deformable's own frame.
+/// A deformable body: nodes, and elastic matter between them. Lengths in m, in the deformable's own frame.
 struct DeformableDefinition {
     std::vector<Vec3> nodes;  ///< at rest
     std::variant<SoftSolid, Cloth, Rope> matter;
     std::vector<std::uint32_t> pinned;    ///< nodes that stay where they are placed
-    std::vector<Attachment> attachments;  ///< at most one a node, and none for a pinned one
+    std::vector<Attachment> attachments;  ///< at most one a node, and none for a pinned node
     std::vector<Clamp> clamps;            ///< of a rope: at most one a node, which is pinned or attached
     std::vector<Tie> ties;                ///< of a sheet or rope: at most one a node, which nothing else holds
     Transform pose;                       ///< of its frame at the start
     Vec3 linear_velocity;                 ///< of all nodes at the start, m/s
     Vec3 angular_velocity;                ///< about the centre of mass, world axes, rad/s
     double gravity_factor = 1;            ///< -10 … 10
-    Vec3 force;                           ///< constant, N, world axes, shared among the nodes by mass
-    Material material;                    ///< of its surface, as of bodies; how it bounces follows from its matter
+    Vec3 force;                           ///< constant, N, world axes, distributed over the nodes by mass
+    Material material;                    ///< of its surface, as of bodies; its matter determines how it bounces
     double contact_radius = 1e-3;         ///< distance that nodes keep from other surfaces, m, 1e-5 … 1
     bool enabled = true;                  ///< a disabled one neither moves nor collides
     std::uint32_t collision_group = 1;    ///< bits; as of bodies

@@ -8,8 +8,8 @@
 namespace embody::physics {
 
 // Meshes of simple sheets, lines and bricks. Sheets lie flat in the frame's XZ plane, centred, the warp along X. `edge`
-// is the length that edges of triangles have about, m, > 0; a coarser mesh than the form allows is refined as far as it
-// needs.
+// is the approximate length of the triangles' edges, m, > 0; where it is too coarse for the form, the mesh is made
+// finer.
 
 /// Rows of nearly equilateral triangles. Its four corners are nodes.
 DeformableDefinition cloth_rectangle(double size_x, double size_z, double edge, Cloth cloth = {});

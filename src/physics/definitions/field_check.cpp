@@ -43,7 +43,7 @@ Result<void> check_vector(std::string_view field, Vec3 value, double largest, st
 }
 
 Result<void> check_rotation(std::string_view field, Quat value) {
-    // Denormal components of a rotation are harmless rounding, so only the length matters here.
+    // Denormal components of a rotation are harmless rounding, so only the rotation's length matters here.
     if (!is_finite(value)) return Error{std::string(field), "must be finite numbers"};
     const double squared = dot(value, value);
     if (!(squared > 1e-12) || !(squared < 1e12)) {

@@ -13,7 +13,7 @@
 namespace embody::physics {
 
 /// A body of liquid. Its volume at the start is the union of boxes, convex hulls and single particles, all in world
-/// coordinates, less what solids fill. One that only sees one liquid: two fluids pass through each other.
+/// coordinates, without what bodies fill. Fluids do not interact: two of them pass through each other.
 struct FluidDefinition {
     std::vector<Bounds> boxes;             ///< m
     std::vector<std::vector<Vec3>> hulls;  ///< the convex hull of each list of points, m
@@ -25,10 +25,10 @@ struct FluidDefinition {
     double surface_tension = 0;  ///< N/m, 0 … 10; on cells finer than 2 √(σ/(ρ g)), and of drops at walls
     double cell_size = 0.02;     ///< edge of the cells it is solved on, m, 0.001 … 1; a full cell has eight particles
     double gravity_factor = 1;   ///< -10 … 10
-    bool allow_sleep = true;     ///< rests while nothing moves in it
+    bool allow_sleep = true;     ///< may sleep while nothing moves in it
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
-/// A fluid has at most as many particles.
+/// Maximum number of particles of a fluid.
 inline constexpr std::size_t max_fluid_particles = 4'000'000;
 
 /// The error's `where` is the field, e.g. "boxes[2].lower.x".
@@ -43,9 +43,9 @@ struct FluidParticles {
     double particle_volume = 0;          ///< m³
     Bounds bounds;                       ///< of the positions, world, m
     double cell_size = 0;                ///< m; neighbours in liquid at rest are half of it apart
-    bool is_asleep = false;              ///< nothing has changed since the last step
-    bool is_frozen = false;              ///< its numbers were no longer finite: it stands still for good
-    std::uint64_t version = 0;           ///< another one whenever any of them changed
+    bool is_asleep = false;              ///< the fluid sleeps: nothing has changed since the last step
+    bool is_frozen = false;              ///< its numbers became non-finite: it stands still for good
+    std::uint64_t version = 0;           ///< a new value whenever any of them changed
 };
 
 /// Ids from `first` to below `last`.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sliding and rolling friction that give a heap of balls its slope: measured on poured heaps, docs/physics/grains.md.
+// Sliding and rolling friction that determine the slope of a pile of balls: measured on poured piles,
+// docs/physics/grains.md.
 #include "physics/definitions/grain_material.h"
 
 #include <algorithm>
@@ -11,12 +12,12 @@ namespace embody::physics {
 namespace {
 
 // Lever arm of the friction that stops a ball that spins on the spot, in diameters. Without any, single grains spin for
-// ever and the heap never sleeps: docs/physics/grains.md, "The law".
+// ever and the pile never sleeps: docs/physics/grains.md, "The law".
 constexpr double torsion = 0.1;
 // Lever arms of a material, m: rolling and torsional friction may not have longer ones (material.cpp).
 constexpr double max_rolling = 0.05, max_torsion = 0.1;
 
-/// Slope (degrees) that a sliding friction and a rolling resistance (in diameters) were measured to give.
+/// Slope (degrees) measured for a sliding friction and a rolling resistance (in diameters).
 struct Heap {
     double angle, sliding, rolling;
 };
@@ -37,7 +38,7 @@ constexpr std::array<Heap, 15> heaps = {{{6.5, 0.1, 0.005},
                                          {49.0, 0.6, 0.3},
                                          {90.0, 0.6, 0.3}}};
 
-// Between the measured heaps by straight lines.
+// Linear interpolation between the measured piles.
 Heap heap_of(double angle) {
     const auto above = std::ranges::find_if(heaps, [angle](const Heap& heap) { return heap.angle >= angle; });
     if (above == heaps.begin()) return heaps.front();
@@ -58,8 +59,8 @@ Material grain_material(double friction_angle, double diameter) {
 }
 
 int substeps_for_grains(double diameter, const WorldSettings& settings) {
-    // A part of a step against the time in which a grain falls its own diameter; large islands are solved in twice as
-    // many parts as the settings say.
+    // Length of a substep over the time in which a grain falls its own diameter; large islands are solved in twice as
+    // many substeps as the settings say.
     constexpr double min_gravity = 0.1;  // m/s²: only not zero
     const GrainSettings& grains = settings.solver.fluid.grains;
     const double gravity = std::max(length(settings.gravity), min_gravity);

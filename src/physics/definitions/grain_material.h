@@ -6,11 +6,11 @@
 
 namespace embody::physics {
 
-/// Surface of balls of this diameter (m) whose poured heap comes to rest at `friction_angle` (degrees); what is flatter
-/// than 7 or steeper than 49 gets these. How it was measured: docs/physics/grains.md.
+/// Surface of balls of this diameter (m) whose poured pile comes to rest at `friction_angle` (degrees), clamped to 7 …
+/// 49. How it was measured: docs/physics/grains.md.
 Material grain_material(double friction_angle, double diameter);
 
-/// WorldSettings::substeps that balls of this diameter need so that their heaps have the slope that grain_material
+/// WorldSettings::substeps that balls of this diameter need so that their piles have the slope that grain_material
 /// says; not fewer than the settings have.
 int substeps_for_grains(double diameter, const WorldSettings& settings);
 

@@ -10,8 +10,8 @@
 
 namespace embody::physics {
 
-// What shapes weigh: the solver and all who show or estimate a mass ask here. Solids are homogeneous, of density
-// 1 kg/m³ and in the shape's own frame; the numbers are in range where validate() accepts the shape.
+// Mass properties of shapes, for the solver and for everything that shows or estimates a mass. Solids are homogeneous,
+// of density 1 kg/m³ and in the shape's own frame; the numbers are in range where validate() accepts the shape.
 
 geometry::MassProperties mass_properties(const SphereShape& sphere);
 geometry::MassProperties mass_properties(const BoxShape& box);
@@ -21,14 +21,14 @@ geometry::MassProperties mass_properties(const ConeShape& cone);
 /// Of a hull shape once its hull is built.
 geometry::MassProperties mass_properties(const geometry::ConvexHull& hull);
 
-/// One piece more of a compound: the sum of zero volume is that of none. Where pieces overlap, both count.
+/// Adds a piece of a compound; a sum of zero volume has no pieces yet. Where pieces overlap, both count.
 void add_piece(geometry::MassProperties& sum, const geometry::MassProperties& piece, const Transform& local);
 
 /// What triangles enclose, exactly where they are closed; zero volume where they enclose nothing.
 geometry::VolumeEstimate enclosed_by(const MeshShape& mesh);
 
 /// Of any shape: triangles have what they enclose, although bodies of them are static; planes and heightfields have
-/// zero volume. Errors are those of validate(), and points that span no volume.
+/// zero volume. Errors: those of validate(), and points that span no volume.
 Result<geometry::MassProperties> mass_properties(const ShapeDefinition& shape);
 
 /// Mass and its distribution.
@@ -39,7 +39,7 @@ struct BodyMass {
 };
 
 /// What `definition` gives, the rest from the homogeneous solid; `solid` has zero volume for a body without a shape
-/// that has one. Errors: neither says the mass or the inertia, or the mass is outside 1e-9 … 1e12 kg.
+/// that has one. Errors: neither of the two determines the mass or the inertia, or the mass is outside 1e-9 … 1e12 kg.
 Result<BodyMass> body_mass(const MassDefinition& definition, const geometry::MassProperties& solid);
 
 }  // namespace embody::physics

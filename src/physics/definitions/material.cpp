@@ -17,8 +17,8 @@ Result<void> check_rule(const char* field, CombineRule rule) {
 
 double combine(CombineRule rule, double a, double b) {
     switch (rule) {
-        case CombineRule::pair_table:  // replaced before by what stands in for it
-        case CombineRule::own:         // likewise, of one body; here of both
+        case CombineRule::pair_table:  // replaced before by the rule that stands in for it
+        case CombineRule::own:         // likewise; here both bodies have this rule
         case CombineRule::geometric_mean:
             return std::sqrt(a * b);
         case CombineRule::average:
@@ -69,7 +69,7 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     pair.restitution_combine = std::max(a.restitution_combine, b.restitution_combine);
     const PairCoefficients* known = pairs.find(a.surface, b.surface);
 
-    // Friction: of the table where both leave it to it, else by rule.
+    // Friction: from the table where both bodies ask for the table, else by rule.
     const bool by_table = pair.friction_combine == CombineRule::pair_table;
     const CombineRule friction = by_table ? CombineRule::geometric_mean : pair.friction_combine;
     const auto friction_impulse = [&](double of_a, double of_b) {
@@ -82,7 +82,7 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
         pair.friction_dynamic = known->friction_dynamic;
     }
 
-    // Restitution likewise.
+    // Restitution: likewise.
     const bool bounces_by_table = pair.restitution_combine == CombineRule::pair_table;
     const CombineRule restitution = bounces_by_table ? CombineRule::maximum : pair.restitution_combine;
     pair.restitution = bounces_by_table && known != nullptr
@@ -90,7 +90,7 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
                            : combine(restitution, Side{a.restitution_combine, a.restitution},
                                      Side{b.restitution_combine, b.restitution});
 
-    // A lever arm is a length of the softer of the two surfaces; the pair resists as the more resisting one does.
+    // A lever arm is a length of the softer of the two surfaces; the pair has the larger of the two.
     pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);
     pair.friction_torsional = std::max(a.friction_torsional, b.friction_torsional);
     pair.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);

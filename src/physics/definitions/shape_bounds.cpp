@@ -53,7 +53,7 @@ private:
         const Vec3 at = transform_point(pose, center), reach{radius, radius, radius};
         all.add(Bounds{at - reach, at + reach});
     }
-    // A disc reaches as far along an axis as the part of the axis in its plane is long.
+    // The extent of a unit disc along an axis is the length of the axis's projection onto its plane.
     void add_disc(double height, double radius) const {
         const Vec3 normal = rotate(pose.rotation, {0, 1, 0}), at = transform_point(pose, {0, height, 0});
         Vec3 reach;

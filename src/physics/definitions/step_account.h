@@ -38,12 +38,12 @@ enum class StepCause : std::uint8_t {
 /// "gravity", "position correction", …
 const char* name_of(StepCause cause);
 
-/// Where the energy and the momenta of the rigid bodies went in one step. Each entry is found on its own, from the
-/// forces and impulses; what they do not explain of the change of the bodies' states is told apart.
+/// Account of the energy and the momenta of the rigid bodies in one step. Each entry is found on its own, from the
+/// forces and impulses; the residual is the change of the bodies' states that the entries do not explain.
 struct StepAccount {
     struct Entry {
         double work = 0;       ///< J
-        Vec3 linear_impulse;   ///< N s, of what is no rigid body that moves freely
+        Vec3 linear_impulse;   ///< N s, of everything but freely moving rigid bodies
         Vec3 angular_impulse;  ///< about the world's origin, N m s
     };
     Conserved before, after;

@@ -27,17 +27,18 @@ enum class StepStage : std::uint8_t {
 /// Limits reached while running; each names the setting to change.
 enum class StepLimit : std::uint32_t {
     none = 0,
-    linear_speed_clamped = 1u << 0,    ///< raise WorldSettings::max_linear_speed
-    not_finite_body_frozen = 1u << 1,  ///< a body's state left the finite numbers; it was disabled where it last was
-    impact_iterations_exhausted =
-        1u << 2,                 ///< impacts needed more rounds, or were more, than allowed; a smaller time_step helps
-    deep_penetration = 1u << 3,  ///< bodies overlap deeply; place them apart or use a smaller time_step
-    too_many_pairs = 1u << 4,    ///< so many bodies are in each other that some pairs are left out
+    linear_speed_clamped = 1u << 0,          ///< raise WorldSettings::max_linear_speed
+    not_finite_body_frozen = 1u << 1,        ///< a body's state became non-finite; it was disabled where it last was
+    impact_iterations_exhausted = 1u << 2,   ///< impacts needed more iterations, or were more, than allowed; a smaller
+                                             ///< time_step helps
+    deep_penetration = 1u << 3,              ///< bodies overlap deeply; place them apart or use a smaller time_step
+    too_many_pairs = 1u << 4,                ///< so many bodies overlap that some pairs are left out
     angular_speed_clamped = 1u << 5,         ///< raise WorldSettings::max_angular_speed
     not_finite_deformable_frozen = 1u << 6,  ///< the same for a deformable
     not_finite_fluid_frozen = 1u << 7,       ///< the same for a fluid
     fluid_particles_lost = 1u << 8,  ///< particles flew so far that no grid holds them: walls or a floor are missing
-    fluid_too_fast = 1u << 9,        ///< liquid moves many cells a step; a larger cell_size or smaller time_step helps
+    fluid_too_fast = 1u << 9,        ///< liquid moves by many cells a step; a larger cell_size or smaller time_step
+                                     ///< helps
     fluid_unsolved = 1u << 10,       ///< its pressure or viscosity was not solved to the end; a smaller time_step helps
 };
 

@@ -9,35 +9,36 @@ namespace embody::physics {
 
 /// A ball along still ground (src/physics/constraint/rolling/ball_path.cpp).
 struct BallPathSettings {
-    /// Turn of the normal, or of the phase of a swing, in a part of the step, rad. Test: Settings.AreNoticed.
+    /// Maximum turn of the normal, or of the phase of an oscillation, in a part of the step, rad. Test:
+    /// Settings.AreNoticed.
     double part_turn = 0.06;
-    /// Way of the ball in a part, of its radius. Test: Settings.AreNoticed.
+    /// Maximum travel of the ball in a part, in radii. Test: Settings.AreNoticed.
     double part_travel_fraction = 0.5;
-    /// Parts of a step; what needs more is the contact solver's. Test: Settings.AreNoticed.
+    /// Maximum number of parts of a step; the contact solver takes what needs more. Test: Settings.AreNoticed.
     int max_parts = 256;
-    /// Times that a part is halved where the ground is not found. Test: Settings.AreNoticed.
+    /// Maximum number of times that a part is halved where the ground is not found. Test: Settings.AreNoticed.
     int max_halvings = 6;
-    /// Planes of the ground that the ball is put onto in turn. Test: Settings.AreNoticed.
+    /// Maximum number of planes of the ground that the ball is put onto in turn. Test: Settings.AreNoticed.
     int settle_iterations = 8;
     /// Speed below which a ball comes to rest, with a step of gravity added, m/s. Test: Settings.AreNoticed.
     double slow_speed = 2e-3;
-    /// The same on ground that resists rolling, m/s. Test: Settings.AreNoticed.
+    /// The same speed on ground that resists rolling, m/s. Test: Settings.AreNoticed.
     double slow_resisted_speed = 0.05;
-    /// Depth from which on its energy pays for lifting the ball out, m; so deep the contact solver carries it. Test:
-    /// SleepOnlyInBalance.ABallRollsDownTheGentlestSlope.
+    /// Depth from which on the ball's energy pays for lifting it out, m; up to that depth the contact solver carries
+    /// it. Test: SleepOnlyInBalance.ABallRollsDownTheGentlestSlope.
     double min_sag = 1e-5;
-    /// Depth, of the radius, beyond which the contact solver takes the ball out. Test: Settings.AreNoticed.
+    /// Depth, in radii, beyond which the contact solver takes the ball out. Test: Settings.AreNoticed.
     double max_depth_fraction = 0.1;
-    /// Speed of parting over that along the ground, besides max_parting_speed, above which a ball that does not bounce
-    /// leaves it. Test: Settings.AreNoticed.
+    /// Separating speed over the speed along the ground, besides max_parting_speed, above which a ball that does not
+    /// bounce leaves the ground. Test: Settings.AreNoticed.
     double max_parting_fraction = 0.02;
     /// Slip over the speed up to which a ball rolls at the start of a step. Test: Settings.AreNoticed.
     double roll_slip_fraction = 1e-3;
-    /// Gap, of the radius, up to which ground is looked for after a part besides what smooth edges turn. Test:
+    /// Gap, in radii, up to which ground is looked for after a part, besides the gap that smooth edges make. Test:
     /// Settings.AreNoticed.
     double settle_margin_fraction = 1e-3;
-    /// Width of a hollow over the ball, 1 + κ r, below which it counts as so wide: it is hardly wider than the ball.
-    /// Test: Settings.AreNoticed.
+    /// Minimum of 1 + κ r, the width of a hollow over the ball's: a hollow that is narrower counts as this wide. Test:
+    /// Settings.AreNoticed.
     double min_hollow_fraction = 0.2;
 };
 
@@ -59,20 +60,20 @@ inline constexpr auto settings_of<BallPathSettings> = std::tuple{
 };
 static_assert(setting_count<BallPathSettings> == member_count<BallPathSettings>(), "a setting is in no list");
 
-/// Balls that roll near each other (src/physics/stages/rigid/ball_cluster.cpp).
+/// Balls that roll close to each other (src/physics/stages/rigid/ball_cluster.cpp).
 struct BallClusterSettings {
-    /// Gap, of the smaller radius, at which balls touch. Test: Settings.AreNoticed.
+    /// Gap, over the smaller radius, at which balls touch. Test: Settings.AreNoticed.
     double touch_fraction = 1e-6;
-    /// Depth, of the smaller radius, beyond which the contact solver takes balls out of each other. Test:
-    /// Settings.AreNoticed.
+    /// Depth, over the smaller radius, beyond which the contact solver separates balls. Test: Settings.AreNoticed.
     double max_depth_fraction = 0.5;
-    /// The same of balls that stay together. Test: Settings.AreNoticed.
+    /// The same depth for balls that stay together. Test: Settings.AreNoticed.
     double max_rest_depth_fraction = 0.01;
-    /// Collisions of a pair in a step. Test: Settings.AreNoticed.
+    /// Maximum number of collisions of a pair in a step. Test: Settings.AreNoticed.
     std::size_t max_collisions = 64;
-    /// Parts for each part and each pair in a step. Test: Settings.AreNoticed.
+    /// Maximum number of further parts for each part and each pair in a step. Test: Settings.AreNoticed.
     int part_budget = 4;
-    /// Balls of a cluster: the time of one worker grows with the square of their number. Test: Settings.AreNoticed.
+    /// Maximum number of balls of a cluster: the time of one worker grows with the square of their number. Test:
+    /// Settings.AreNoticed.
     std::size_t max_members = 32;
 };
 

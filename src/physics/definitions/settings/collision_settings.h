@@ -7,39 +7,39 @@
 
 namespace embody::physics {
 
-/// How near surfaces are looked for, how long contacts follow their bodies before they are looked for again, and what
-/// stops fast bodies (src/physics/stages/touch, stages/rigid/continuous.cpp). Tolerances of the geometry itself stand
-/// where they are used.
+/// Gaps up to which surfaces are looked for, how long contacts follow their bodies before they are found anew, and how
+/// fast bodies are stopped (src/physics/stages/touch, stages/rigid/continuous.cpp). The tolerances of src/geometry
+/// stand where they are used.
 struct CollisionSettings {
     /// Gap up to which surfaces are looked for besides what they can close in the step, m. Source: Bullet's contact
     /// breaking threshold is 0.02, Box2D's speculative distance 4 slops of 0.005. Test: Settings.AreNoticed.
     double contact_margin = 0.005;
-    /// The same for balls, of their radius: their one point of contact does not jump, and grains of millimetres would
-    /// have most of their contacts with others that they do not touch. Test: Settings.AreNoticed.
+    /// The same gap for balls, in radii: their one point of contact does not jump, and with an absolute gap most
+    /// contacts of grains of millimetres would be with grains that they do not touch. Test: Settings.AreNoticed.
     double ball_margin_fraction = 0.1;
-    /// Travel of a pair for which its contacts follow it, m: each corner within contact_margin and this is among them.
+    /// Travel of a pair up to which its contacts follow it, m: they hold each corner within contact_margin plus this.
     /// Test: Settings.AreNoticed.
     double follow_travel = 0.0025;
-    /// The same where corners had to be left out, m: they sink unseen. Test: Settings.AreNoticed.
+    /// The same travel where corners had to be left out, m: those corners sink undetected. Test: Settings.AreNoticed.
     double follow_travel_partial = 1e-3;
-    /// The same of what rolls, m: its point of contact does not stay on it; after so short a way the gap is right to a
-    /// hundredth of it. Test: Settings.AreNoticed.
+    /// The same travel for a rolling body, m: its point of contact does not stay on it; after so short a travel the gap
+    /// is right to a hundredth of the travel. Test: Settings.AreNoticed.
     double follow_travel_round = 2e-5;
     /// Cosine between normals above which a contact with another triangle goes on from an old one of the same body.
     /// Test: MeshSlide.a_smooth_flat_mesh_neither_brakes_nor_turns_nor_lifts.
     double same_normal_cosine = 0.98;
-    /// Reach of the points of a rolling contact, of the body's: farther ones of the rim would move the anchor of
-    /// friction up to the axle. Test: Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
+    /// Reach of the points of a rolling contact, over the body's reach: farther points of the rim would move the anchor
+    /// of friction up to the axle. Test: Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
     double rim_reach_fraction = 0.1;
-    /// Gap at which what comes near wakes a sleeper, m. Test: SleepingWorld.wakes_where_something_falls_on_it.
+    /// Gap at which an approaching body wakes a sleeper, m. Test: SleepingWorld.wakes_where_something_falls_on_it.
     double wake_gap = 1e-4;
-    /// Gap that continuous collision leaves, m: the contact solver has what is nearer. Source: below contact_margin.
+    /// Gap that continuous collision leaves, m: the contact solver takes smaller gaps. Source: below contact_margin.
     /// Test: Settings.AreNoticed.
     double continuous_gap = 1e-3;
-    /// Share of its inner radius that a body marked continuous may go unseen in a step; others may go all of it. Test:
-    /// Continuous.two_bullets_toward_each_other_meet.
+    /// Travel in a step, over its inner radius, up to which a body marked continuous is not swept; for other bodies it
+    /// is 1. Test: Continuous.two_bullets_toward_each_other_meet.
     double continuous_travel_fraction = 0.25;
-    /// Share of its inner radius that a body may sink while it slides along a thing before it is stopped. Test:
+    /// Depth, over its inner radius, to which a body that slides along an obstacle may sink before it is stopped. Test:
     /// Continuous.a_fast_slide_over_triangles_is_not_held_up_and_ends_at_a_wall_of_the_same_mesh.
     double continuous_slide_fraction = 0.25;
     /// Half the turn in a step below which contacts follow a body's ends by themselves, rad. Test:

@@ -9,25 +9,26 @@ namespace embody::physics {
 
 /// Contact regions and the sweeps over them (src/physics/constraint/contact, sweeps).
 struct ContactSettings {
-    /// Distance up to which a new point goes on from an old one that had another name, m. Source: Bullet's contact
-    /// breaking threshold is 0.02. Test: Settings.AreNoticed.
+    /// Distance up to which a new point takes over the impulses of an old one of another feature, m. Source: Bullet's
+    /// contact breaking threshold is 0.02. Test: Settings.AreNoticed.
     double match_reach = 0.02;
-    /// The same for points of one name, over match_reach: features tell the same point wherever it slides. Test:
-    /// Settings.AreNoticed.
+    /// The same distance for points of one feature, over match_reach: the feature identifies the point wherever it
+    /// slides. Test: Settings.AreNoticed.
     double match_feature_ratio = 5;
-    /// Depth from which on a step reports that bodies were found far in each other, m; it steers nothing else. Source:
-    /// what max_correction_speed takes out in a step of 1/60 s.
+    /// Depth from which on a step reports that bodies overlap deeply, m; it steers nothing else. Source: what
+    /// max_correction_speed takes out in a step of 1/60 s.
     float deep_penetration = 0.05F;
-    /// Depth beyond the sag of a loaded soft contact that is let be, m. Source: Box2D's linear slop of 0.005, which
-    /// keeps contacts there; here contacts are kept whatever their depth. Test: Settings.AreNoticed.
+    /// Depth beyond the sag of a loaded soft contact that is not corrected, m. Source: Box2D's linear slop of 0.005,
+    /// which keeps contacts there; here contacts are kept whatever their depth. Test: Settings.AreNoticed.
     double penetration_slop = 1e-4;
-    /// Share of a penetration that is taken out a second, 1/s. Faster, a foot that was found too deep kicks its chair
-    /// up. Test: Settings.AreNoticed.
+    /// Fraction of a penetration that is corrected a second, 1/s. At a larger rate a chair's foot that was found too
+    /// deep kicks the chair up. Test: Settings.AreNoticed.
     double recovery_rate = 10;
-    /// Speed up to which overlapping bodies are parted, m/s; of all solvers of contacts. Source: Box2D 3's speed of 3
-    /// m/s for the same. Test: Settings.AreNoticed.
+    /// Maximum speed at which overlapping bodies are separated, m/s; for all contact solvers. Source: Box2D 3's speed
+    /// of 3 m/s for the same. Test: Settings.AreNoticed.
     double max_correction_speed = 3;
-    /// Contacts up to which a list is short: it takes the world's substeps and more passes. Test: Settings.AreNoticed.
+    /// Number of contacts up to which a list is short: a short list takes the world's substeps and more passes. Test:
+    /// Settings.AreNoticed.
     std::size_t long_list_contacts = 64;
     /// Substeps of a long list, over those of the world. Source: M. Macklin et al., "Small steps in physics
     /// simulation", 2019. Test: ContactSolver.LongListsAreSolvedInFinerStepsAndShortOnesInMorePasses.
@@ -35,17 +36,17 @@ struct ContactSettings {
     /// Passes over a long list in each phase of a substep. Source: Macklin et al. 2019, one iteration a substep. Test:
     /// Settings.AreNoticed.
     int long_list_passes = 1;
-    /// The same over a short list. Test: ContactSolver.LongListsAreSolvedInFinerStepsAndShortOnesInMorePasses.
+    /// Passes over a short list. Test: ContactSolver.LongListsAreSolvedInFinerStepsAndShortOnesInMorePasses.
     int short_list_passes = 2;
-    /// The same over a short list of contacts among joints, whose substeps stay those of the world. Test:
+    /// Passes over a short list of contacts among joints, whose substeps stay those of the world. Test:
     /// Settings.AreNoticed.
     int jointed_passes = 8;
-    /// Frequency of the soft contacts of a long list over that of its substeps: as much as one pass brings to an end.
-    /// Source: Box2D 3 bounds it by a quarter. Test: Settings.AreNoticed.
+    /// Frequency of the soft contacts of a long list over that of its substeps: the maximum at which one pass
+    /// converges. Source: Box2D 3 bounds it by a quarter. Test: Settings.AreNoticed.
     double long_list_stiffness = 0.15;
-    /// The same of a short list, which two passes bring to an end. Test: Settings.AreNoticed.
+    /// The same for a short list, where two passes converge. Test: Settings.AreNoticed.
     double short_list_stiffness = 0.3;
-    /// The same of a short list among joints, which more passes bring to an end. Test: Settings.AreNoticed.
+    /// The same for a short list among joints, where more passes converge. Test: Settings.AreNoticed.
     double jointed_stiffness = 0.5;
 };
 

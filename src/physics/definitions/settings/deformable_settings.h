@@ -8,17 +8,17 @@
 
 namespace embody::physics {
 
-/// When deformables fall asleep and wake (src/physics/stages/deformable/deformables.cpp). What a change of their push
-/// wakes is OptimizationSettings::wake_force_fraction.
+/// When deformables fall asleep and wake (src/physics/stages/deformable/deformables.cpp).
+/// OptimizationSettings::wake_force_fraction says when a change of their push wakes a body.
 struct DeformableSleepSettings {
     /// Speed of all nodes below which a deformable may sleep, m/s. Source: Jolt's threshold for points of bodies is
     /// 0.03 m/s. Test: Settings.AreNoticed.
     double max_speed = 0.02;
-    /// Way within which the nodes of a sheet or rope must stay instead where contacts make it tremble, m. Test:
-    /// Settings.AreNoticed.
+    /// Displacement within which the nodes of a sheet or rope must stay instead, where contacts make it jitter, m.
+    /// Test: Settings.AreNoticed.
     double max_displacement = 1e-3;
-    /// Speed from which on a body or deformable wakes what it is near, m/s. Source: above max_speed, and as Box2D's
-    /// sleep threshold of 0.05 m/s. Test: Settings.AreNoticed.
+    /// Speed from which on a body or deformable wakes what is within its reach, m/s. Source: above max_speed, and as
+    /// Box2D's sleep threshold of 0.05 m/s. Test: Settings.AreNoticed.
     double wake_speed = 0.05;
 };
 

@@ -13,69 +13,72 @@ struct DirectSettings {
     /// Speed of all points of an island below which it is solved once a step, if they stay slower, m/s. Test:
     /// Settings.AreNoticed.
     double slow_speed = 0.02;
-    /// Change of speed that the last impulses may leave of what they hold, m/s, rad/s. Source: stored in floats, they
-    /// leave 1e-7 of what a step of gravity changes, 0.16. Test: Settings.AreNoticed.
+    /// Maximum change of speed with which the last impulses still count as holding their bodies, m/s, rad/s. Source:
+    /// stored in floats, they leave 1e-7 of what a step of gravity changes, 0.16. Test: Settings.AreNoticed.
     double held_speed_tolerance = 1e-6;
     /// Gap or depth that loaded points at rest may have, m. Source: at rest's k, one micrometre would unload a point,
     /// docs/physics/direct-solver.md. Test: Settings.AreNoticed.
     double rest_gap_tolerance = 2e-5;
-    /// Share of a gap or a depth closed in the one solve of a step at rest. Test: Settings.AreNoticed.
+    /// Fraction of a gap or a depth that is closed in the one solve of a step at rest. Test: Settings.AreNoticed.
     double rest_correction_fraction = 0.5;
-    /// The same in a substep of what moves: lifting is work that a rocking column keeps. Test:
+    /// The same fraction in a substep of moving bodies: lifting is work that a rocking column keeps. Test:
     /// DirectSolver.ColumnsThatLandBouncingAndRockComeToRest.
     double moving_correction_fraction = 0.005;
     /// Gap or depth of loaded points below which nothing is closed in motion, m. Test: Settings.AreNoticed.
     double moving_gap_tolerance = 1e-7;
-    /// Way of a body by corrections in a step at rest, m. Test: Settings.AreNoticed.
+    /// Maximum displacement of a body by corrections in a step at rest, m. Test: Settings.AreNoticed.
     double max_rest_shift = 2e-3;
-    /// Cost of a round, in products of 6×6 blocks, up to which what sweeps could solve as well is solved directly while
-    /// it is slow. Source: measured, docs/physics/direct-solver.md: a wall of 210 cubes takes 13,900. Test:
+    /// Cost of an iteration, in products of 6×6 blocks, up to which a slow island that sweeps could solve as well is
+    /// solved directly. Source: measured, docs/physics/direct-solver.md: a wall of 210 cubes takes 13,900. Test:
     /// Settings.AreNoticed.
     std::size_t max_products_slow = 16000;
-    /// Cost of all such rounds of a step after which no other is begun. Source: 3 to 7 ms by the measurements of
+    /// Cost of all such iterations of a step after which no other is begun. Source: 3 to 7 ms by the measurements of
     /// docs/physics/direct-solver.md. Test: Settings.AreNoticed.
     std::size_t max_products_step = 60000;
-    /// Stiffness k of the augmented Lagrangian over the heaviest mass. Source: one solve from no guess is then right to
-    /// its inverse, and doubles hold it up to ratios of masses of 1e6. Test: Settings.AreNoticed.
+    /// Stiffness k of the augmented Lagrangian over the heaviest mass. Source: one solve without a guess is then right
+    /// to the inverse of this ratio, and doubles hold it up to ratios of masses of 1e6. Test: Settings.AreNoticed.
     double stiffness_per_mass = 1e5;
-    /// Share of k where the sweeps' loads are the guess for what rests: with all of it a point that is left out lets
-    /// its body fall so far that many others stop it. Source: measured, docs/physics/direct-solver.md. Test:
-    /// Settings.AreNoticed.
+    /// Fraction of k that is used where the sweeps' loads are the guess for bodies at rest: with all of k, a point that
+    /// is left out lets its body fall so far that many other points stop it. Source: measured,
+    /// docs/physics/direct-solver.md. Test: Settings.AreNoticed.
     double rest_stiffness_fraction = 1e-2;
-    /// The same where the loads of the step before are the guess, which found it at rest. Test: Settings.AreNoticed.
+    /// The same fraction where the guess is the loads of the step before, which found the bodies at rest. Test:
+    /// Settings.AreNoticed.
     double settling_stiffness_fraction = 0.1;
-    /// Rounds of Newton's method with whole steps. Test: Settings.AreNoticed.
+    /// Maximum iterations of Newton's method with whole steps. Test: Settings.AreNoticed.
     int undamped_iterations = 4;
-    /// Rounds after these with steps as far as f falls. Test: Settings.AreNoticed.
+    /// Maximum further iterations with steps as far as f falls. Test: Settings.AreNoticed.
     int lagged_iterations = 8;
-    /// Rounds for what rests. Test: ContactNewton.RestKeepsMomentumAndLiesInTheCone.
+    /// Maximum iterations for bodies at rest. Test: ContactNewton.RestKeepsMomentumAndLiesInTheCone.
     int rest_iterations = 16;
-    /// Share of the slope along a step that may be left where the line search ends. Source: J. Nocedal, S. Wright,
-    /// "Numerical optimization", 2006: 0.9 is usual with Newton's method, 0.1 where the search is to be more exact.
-    /// Test: Settings.AreNoticed.
+    /// Fraction of the slope along a step at which the line search ends. Source: J. Nocedal, S. Wright, "Numerical
+    /// optimization", 2006: 0.9 is usual with Newton's method, 0.1 where the search is to be more exact. Test:
+    /// Settings.AreNoticed.
     double line_search_tolerance = 0.1;
-    /// Points of a line search. Test: Settings.AreNoticed.
+    /// Maximum points of a line search. Test: Settings.AreNoticed.
     int line_search_iterations = 12;
-    /// Share of the largest load by which a last step may miss its impulses. Source: that of the floats that store
-    /// them. Test: Settings.AreNoticed.
+    /// Maximum error of the impulses of a last step, over the largest load. Source: the rounding of the floats that
+    /// store them. Test: Settings.AreNoticed.
     double force_tolerance = 1e-7;
-    /// Share of its size by which the metric of friction may be wrong before it is renewed: the factors serve on. Test:
+    /// Relative error of the metric of friction up to which it is kept, and with it the factors. Test:
     /// Settings.AreNoticed.
     double metric_tolerance = 0.02;
-    /// Parting speed up to which new points are taken as loaded in the first round, m/s. Test: Settings.AreNoticed.
+    /// Separating speed up to which new points are taken as loaded in the first iteration, m/s. Test:
+    /// Settings.AreNoticed.
     double new_contact_speed = 1e-3;
-    /// Lever arm of the twist, of the patch's extent, below which it is what rounding left of a single loaded point.
-    /// Source: the floats of the sweeps leave 1e-7 of it, docs/physics/direct-solver.md. Test: Settings.AreNoticed.
+    /// Lever arm of the twist, over the patch's extent, below which it is rounding and a single point is loaded.
+    /// Source: the floats of the sweeps leave 1e-7, docs/physics/direct-solver.md. Test: Settings.AreNoticed.
     double min_spin_arm_fraction = 1e-3;
-    /// Steps to the next attempt after a first vain one; twice as many after each other. Test: Settings.AreNoticed.
+    /// Steps to the next attempt after a first failure; the number doubles with each further failure. Test:
+    /// Settings.AreNoticed.
     std::uint64_t min_idle_steps = 15;
-    /// Steps to the next attempt after many vain ones: 16 s at 60 Hz. Test: Settings.AreNoticed.
+    /// Maximum steps to the next attempt after many failures: 16 s at 60 Hz. Test: Settings.AreNoticed.
     std::uint64_t max_idle_steps = 960;
-    /// Steps in a row found at rest after which what its last impulses do not hold never will be. Test:
-    /// Settings.AreNoticed.
+    /// Steps in a row found at rest after which a list that its last impulses do not hold is taken as never held by
+    /// them. Test: Settings.AreNoticed.
     std::uint64_t max_rest_steps = 60;
-    /// Steps for which what was found about a graph is kept unused: then another may have its place. Test:
-    /// Settings.AreNoticed.
+    /// Steps for which what was found about an unused graph is kept: after these another graph may take its place.
+    /// Test: Settings.AreNoticed.
     std::uint64_t memory_steps = 60;
 };
 

@@ -10,14 +10,14 @@ namespace embody::physics {
 
 /// How many parts a step of a fluid is solved in (src/physics/fluid/solver.cpp).
 struct FluidPartSettings {
-    /// Distance that particles move in a part of a step, and obstacles where the liquid catches up with them, cells.
-    /// Source: N. Foster, R. Fedkiw 2001 allow 5, for paths that nothing stops; here an obstacle's distances are known
+    /// Maximum travel of particles in a part of a step, and of obstacles where the liquid catches up with them, cells.
+    /// Source: N. Foster, R. Fedkiw 2001 allow 5, for paths without obstacles; here an obstacle's distances are known
     /// for two cells around it. Test: Settings.AreNoticed.
     double max_displacement = 1.5;
-    /// Parts of a step; what is faster is slowed and the report says so. Test: Settings.AreNoticed.
+    /// Maximum number of parts of a step; faster liquid is slowed and the report says so. Test: Settings.AreNoticed.
     int max_parts = 16;
-    /// One particle in so many may be faster than the usual speed, which steps and sleep go by: a few drops do not cost
-    /// everything more parts. Test: Settings.AreNoticed.
+    /// One particle in this many may be faster than the usual speed, which determines the parts of a step and sleep: a
+    /// few fast drops do not make the whole fluid take more parts. Test: Settings.AreNoticed.
     std::size_t particles_per_outlier = 200;
 };
 
@@ -31,27 +31,29 @@ static_assert(setting_count<FluidPartSettings> == member_count<FluidPartSettings
 
 /// Which cells are worked on and which hold liquid (src/physics/fluid/grid).
 struct FluidCellSettings {
-    /// Room that obstacles leave of a cell's kernel, 0 … 1, below which the cell has no surface of its own: it takes it
-    /// from its neighbours. Test: Settings.AreNoticed.
+    /// Fraction of a cell's kernel outside obstacles, 0 … 1, below which the cell takes its surface from its
+    /// neighbours. Test: Settings.AreNoticed.
     float min_room = 0.3f;
-    /// Times that cells with less room look at such neighbours: twice reaches corners. Test: Settings.AreNoticed.
+    /// Number of times that cells with less room look at such neighbours: with two, cells in corners are reached. Test:
+    /// Settings.AreNoticed.
     int narrow_passes = 2;
-    /// Particles in a tile of 128 cells from which on it has liquid without a closer look. Source: one and a half a
-    /// cell; liquid has eight. Test: Settings.AreNoticed.
+    /// Number of particles in a tile of 128 cells from which on the tile counts as liquid without a closer look.
+    /// Source: one and a half a cell; liquid has eight. Test: Settings.AreNoticed.
     std::uint32_t full_tile_particles = 192;
-    /// Share of a cell's room that is filled from which on it may soon be liquid. Source: liquid cells are half full
-    /// (height_of_surface in liquid_cells.cpp), and a part of a step moves what is nearly so. Test:
+    /// Filled fraction of a cell's room from which on the cell may soon be liquid. Source: liquid cells are half full
+    /// (height_of_surface in liquid_cells.cpp), and a part of a step moves cells that are nearly so. Test:
     /// Settings.AreNoticed.
     float wet_fraction = 0.45f;
-    /// Such cells in a tile that are still a few drops beside each other. Test: Settings.AreNoticed.
+    /// Maximum number of such cells in a tile that still count as a few drops beside each other. Test:
+    /// Settings.AreNoticed.
     int max_drop_cells = 2;
-    /// Share of a cell's room that is filled from which on it is no drop, though it is alone. Test:
+    /// Filled fraction of a cell's room from which on the cell is no drop even if it is alone. Test:
     /// Settings.AreNoticed.
     float full_fraction = 0.9f;
-    /// Cells of the grid's box for each particle; strays that would need more are given up. Source: a cell takes some
-    /// 110 bytes, so many of them 1.7 kB a particle. Test: Settings.AreNoticed.
+    /// Maximum cells of the grid's box for each particle; stray particles that would need more are removed. Source: a
+    /// cell takes some 110 bytes, so many of them 1.7 kB a particle. Test: Settings.AreNoticed.
     std::size_t box_cells_per_particle = 16;
-    /// Cells that the box may have however few particles there are. Source: 0.2 GB at 110 bytes a cell. Test:
+    /// Cells that the box may always have, however few particles there are. Source: 0.2 GB at 110 bytes a cell. Test:
     /// Settings.AreNoticed.
     std::size_t min_box_cells = 2'000'000;
 };

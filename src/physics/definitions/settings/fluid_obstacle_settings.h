@@ -5,22 +5,23 @@
 
 namespace embody::physics {
 
-/// What bodies are to a fluid (src/physics/fluid/obstacles, stages/fluid/fluids.cpp).
+/// Bodies as obstacles of a fluid (src/physics/fluid/obstacles, stages/fluid/fluids.cpp).
 struct FluidObstacleSettings {
-    /// Share of a face that is open below which it is shut: seams between obstacles that touch do not leak. Test:
+    /// Open fraction of a face below which the face is shut: seams between obstacles that touch do not leak. Test:
     /// Settings.AreNoticed.
     float min_open = 0.02f;
-    /// Distance by which a body may be put elsewhere from outside, m, and still was moved through the fluid. Test:
-    /// FluidObstacles.KnowHowFarTheyAreFromWhereTheyWereLeft.
+    /// Maximum distance by which a body may be placed elsewhere from outside and still count as moved through the
+    /// fluid, m. Test: FluidObstacles.KnowHowFarTheyAreFromWhereTheyWereLeft.
     double max_jump = 0.5;
-    /// How much thicker the hulls of a compound are met, of its longest side, which closes the gaps between them.
-    /// Source: those of catalogue models lie up to 0.8 mm (a mug of 12 cm) inside of the surface that they stand for.
-    /// Test: Settings.AreNoticed.
+    /// Thickness added to the hulls of a compound, over its longest side; it closes the gaps between them. Source:
+    /// those of catalogue models lie up to 0.8 mm (a mug of 12 cm) inside of the surface that they stand for. Test:
+    /// Settings.AreNoticed.
     double seal_fraction = 0.01;
-    /// The same at most, m. Source: 1.3 mm for a bathtub of 1.7 m. Test: Settings.AreNoticed.
+    /// Maximum of that thickness, m. Source: 1.3 mm for a bathtub of 1.7 m. Test: Settings.AreNoticed.
     double max_seal = 0.0015;
-    /// Force of contacts and joints that is expected to go on from the last step, of the weight of the body and of its
-    /// volume of the fluid, or of what it carries. Source: 1 holds what stands still. Test: Settings.AreNoticed.
+    /// Maximum force of contacts and joints that is expected to go on from the last step, over the weight of the body
+    /// and of its volume of the fluid, or over that of what it carries. Source: 1 holds what stands still. Test:
+    /// Settings.AreNoticed.
     double max_support = 1.5;
 
     bool operator==(const FluidObstacleSettings&) const = default;
@@ -36,24 +37,24 @@ inline constexpr auto settings_of<FluidObstacleSettings> = std::tuple{
 };
 static_assert(setting_count<FluidObstacleSettings> == member_count<FluidObstacleSettings>(), "a setting is in no list");
 
-/// Particles that are kept out of obstacles (src/physics/fluid/particles/collide_particles.cpp, catch_up.cpp).
+/// How particles are kept out of obstacles (src/physics/fluid/particles/collide_particles.cpp, catch_up.cpp).
 struct FluidCollisionSettings {
     /// Distance that particles keep from obstacles, cells. Test: Settings.AreNoticed.
     float wall_gap = 0.02f;
-    /// Depth in an obstacle, cells, beyond which a particle that was pushed out of another one goes back to where it
-    /// came from: it is at the seam of the two. Test: Settings.AreNoticed.
+    /// Depth in an obstacle, cells, beyond which a particle that was pushed out of another obstacle goes back to where
+    /// it came from: it is at the seam of the two. Test: Settings.AreNoticed.
     float seam_depth = 0.1f;
-    /// Walls that a particle slides on along in one move. Source: in a corner there are three. Test:
+    /// Maximum number of walls that a particle slides along in one move. Source: in a corner there are three. Test:
     /// Settings.AreNoticed.
     int max_slides = 3;
-    /// Times that all obstacles are gone through for a move beside thin walls: one may have pushed it into another.
-    /// Test: Settings.AreNoticed.
+    /// Number of passes over all obstacles for a move beside thin walls: one obstacle may have pushed the particle into
+    /// another. Test: Settings.AreNoticed.
     int max_sweeps = 2;
-    /// Distance of an obstacle from where it was expected, cells, up to which particles are not looked at again. Test:
+    /// Distance of an obstacle from where it was expected, cells, up to which particles are not checked again. Test:
     /// Settings.AreNoticed.
     double min_catch_up = 0.005;
-    /// The same up to which particles are pushed out one by one; beyond, the liquid is moved as a whole. Test:
-    /// Settings.AreNoticed.
+    /// The same distance up to which particles are pushed out one by one; beyond it the liquid is moved as a whole.
+    /// Test: Settings.AreNoticed.
     double max_single_catch_up = 0.25;
 };
 
@@ -88,13 +89,12 @@ inline constexpr auto settings_of<FluidDropSettings> = std::tuple{
 };
 static_assert(setting_count<FluidDropSettings> == member_count<FluidDropSettings>(), "a setting is in no list");
 
-/// Liquid that hangs together and that nothing holds (src/physics/fluid/particles/free_components.cpp).
+/// Connected components of liquid that nothing holds (src/physics/fluid/particles/free_components.cpp).
 struct FluidComponentSettings {
-    /// Distance from a body, cells, up to which a drop is of the component that the body is in. Test:
-    /// Settings.AreNoticed.
+    /// Distance from a body, cells, up to which a drop belongs to the body's component. Test: Settings.AreNoticed.
     float body_distance = 1.5f;
-    /// Particles of a component from which on its angular momentum is put right: fewer have no turn that the cells
-    /// could tell. Source: eight cells of liquid. Test: Settings.AreNoticed.
+    /// Number of particles of a component from which on its angular momentum is corrected: the cells do not resolve the
+    /// rotation of fewer. Source: eight cells of liquid. Test: Settings.AreNoticed.
     double min_turned_particles = 64;
 };
 

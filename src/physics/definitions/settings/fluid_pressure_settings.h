@@ -8,20 +8,20 @@ namespace embody::physics {
 /// The pressure's equation, also where it moves liquid that catches up with a body (src/physics/fluid/pressure,
 /// solver.cpp, particles/catch_up.cpp).
 struct FluidPressureSettings {
-    /// Distance from a liquid cell's centre to the surface that the equation takes at least, cells: nearer surfaces
-    /// make the matrix stiff. Test: PressureSystem.GapIsTheShareOfTheWayToTheSurface.
+    /// Minimum distance from a liquid cell's centre to the surface in the equation, cells: smaller distances make the
+    /// matrix stiff. Test: PressureSystem.GapIsTheShareOfTheWayToTheSurface.
     float min_gap = 0.005f;
-    /// Change of a cell's volume in a part of a step that is left, of the volume. Test: Settings.AreNoticed.
+    /// Change of a cell's volume that the solve leaves in a part of a step, over the volume. Test: Settings.AreNoticed.
     double tolerance = 1e-4;
-    /// The same where the liquid is moved to catch up with a body: once, and not part for part. Test:
+    /// The same where the liquid is moved to catch up with a body: this happens once a step, not in each part. Test:
     /// Settings.AreNoticed.
     double catch_up_tolerance = 1e-3;
-    /// Iterations of a solve; the report says where they did not suffice. Test: Settings.AreNoticed.
+    /// Maximum iterations of a solve; the report says where they did not suffice. Test: Settings.AreNoticed.
     int max_iterations = 300;
-    /// How far the incomplete Cholesky factor puts what it leaves out on the diagonal: 0 not, 1 wholly. Source: R.
+    /// Fraction of what the incomplete Cholesky factor leaves out that is put on the diagonal, 0 … 1. Source: R.
     /// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.8 (τ).
     double cholesky_modification = 0.97;
-    /// Share of the diagonal below which the factor takes the diagonal itself. Source: R. Bridson 2015, 5.8 (σ).
+    /// Fraction of the diagonal below which the factor takes the diagonal itself. Source: R. Bridson 2015, 5.8 (σ).
     double cholesky_safety = 0.25;
 };
 
@@ -36,15 +36,15 @@ inline constexpr auto settings_of<FluidPressureSettings> = std::tuple{
 };
 static_assert(setting_count<FluidPressureSettings> == member_count<FluidPressureSettings>(), "a setting is in no list");
 
-/// Particles that are moved against clumping (FluidSolver::spread_out, after T. Kugelstadt and others 2019).
+/// How particles are moved against clumping (FluidSolver::spread_out, after T. Kugelstadt and others 2019).
 struct FluidVolumeSettings {
-    /// Share of the density's error that a part of a step takes out. Test: Settings.AreNoticed.
+    /// Fraction of the density's error that a part of a step corrects. Test: Settings.AreNoticed.
     double correction_fraction = 0.5;
-    /// Error of a cell's density that counts, of the liquid's. Test: Settings.AreNoticed.
+    /// Minimum error of a cell's density that counts, over the liquid's density. Test: Settings.AreNoticed.
     double max_error = 0.5;
-    /// Error that the solve leaves, of the liquid's density. Test: Settings.AreNoticed.
+    /// Error that the solve leaves, over the liquid's density. Test: Settings.AreNoticed.
     double tolerance = 0.02;
-    /// Iterations; where they do not suffice the next part goes on. Test: Settings.AreNoticed.
+    /// Maximum iterations; where they do not suffice, the next part continues. Test: Settings.AreNoticed.
     int max_iterations = 40;
 };
 
@@ -57,28 +57,28 @@ inline constexpr auto settings_of<FluidVolumeSettings> = std::tuple{
 };
 static_assert(setting_count<FluidVolumeSettings> == member_count<FluidVolumeSettings>(), "a setting is in no list");
 
-/// Viscosity and how far liquids stick to walls (src/physics/fluid/pressure/viscosity.cpp). ν dt/h², the diffusion
-/// number, tells how many cells far a velocity spreads in a part of a step, squared.
+/// Viscosity, and how much liquids stick to walls (src/physics/fluid/pressure/viscosity.cpp). The diffusion number ν
+/// dt/h² is the square of the distance, in cells, over which a velocity spreads in a part of a step.
 struct FluidViscositySettings {
     /// Diffusion number up to which viscosity is left out. Source: water on cells of 3 mm at 60 Hz has 2e-3 and on
     /// cells of 1.5 cm 7e-5. Test: Settings.AreNoticed.
     double min_diffusion_number = 1e-4;
-    /// Diffusion number of liquid that does not yield: more takes too many iterations, with less it creeps. Test:
-    /// FluidViscosity.AYieldStressSlowsTheFilmAsBinghamSaysAndHoldsItAboveTheStressAtTheGround.
+    /// Diffusion number of liquid that does not yield: a larger one takes too many iterations, with a smaller one the
+    /// liquid creeps. Test: FluidViscosity.AYieldStressSlowsTheFilmAsBinghamSaysAndHoldsItAboveTheStressAtTheGround.
     double max_diffusion_number = 200;
-    /// Distance from a face to a wall that the shear takes at least, cells. Test: Settings.AreNoticed.
+    /// Minimum distance from a face to a wall in the shear, cells. Test: Settings.AreNoticed.
     double min_wall_distance = 0.1;
-    /// Share of a control volume that is liquid: no face has less inertia, and cells in air with less have no
+    /// Minimum liquid fraction of a control volume: no face has less inertia, and cells in air with less have no
     /// viscosity. Test: Viscosity.TakesEnergyButNoMomentum.
     float min_fraction = 0.05f;
     /// A cell's Reynolds number at which liquid sticks to walls by half: then the layer at the wall is as thick as a
     /// cell or so. Test: Viscosity.ThickLayersStickAndThinOnesSlide.
     double stick_reynolds = 4;
-    /// Speed that this number is told by at least, m/s. Test: Settings.AreNoticed.
+    /// Minimum speed in this number, m/s. Test: Settings.AreNoticed.
     double min_stick_speed = 1e-3;
-    /// Residual that is left, of the first one. Test: Settings.AreNoticed.
+    /// Residual that the solve leaves, over the first residual. Test: Settings.AreNoticed.
     double tolerance = 1e-4;
-    /// Iterations; the report says where they did not suffice. Test: Settings.AreNoticed.
+    /// Maximum iterations; the report says where they did not suffice. Test: Settings.AreNoticed.
     int max_iterations = 300;
 };
 
@@ -98,25 +98,25 @@ static_assert(setting_count<FluidViscositySettings> == member_count<FluidViscosi
 
 /// Surface tension (src/physics/fluid/pressure/surface_tension.cpp).
 struct FluidTensionSettings {
-    /// Cell's edge from which on tension is left out, in capillary lengths √(σ/(ρ g)). Source: beside gravity a
-    /// curvature of a cell then has a quarter of its pressure. Test:
+    /// Edge of cells from which on surface tension is left out, in capillary lengths √(σ/(ρ g)). Source: a curvature of
+    /// one cell then has a quarter of gravity's pressure. Test:
     /// SurfaceTension.MattersOnCellsFinerThanTwiceTheCapillaryLength.
     double max_cell_size = 2;
-    /// Weight of each neighbour where the density is smoothed along an axis. Source: waves of two cells are left by 1 −
-    /// 4 of it, a third; at 1/4 nothing holds them, and drops fall to pieces within seconds.
+    /// Weight of each neighbour where the density is smoothed along an axis. Source: 1 − 4 weights of a wave of two
+    /// cells are left, a third; at 1/4 nothing holds such waves, and drops fall to pieces within seconds.
     float smoothing_weight = 1.0f / 6;
-    /// Slope of the liquid's share, in 1/cells, below which there is no surface. Test: Settings.AreNoticed.
+    /// Slope of the liquid's volume fraction, in 1/cells, below which there is no surface. Test: Settings.AreNoticed.
     float min_slope = 0.02f;
-    /// Curvature, in 1/cells. Source: a ball of two cells radius; smaller ones the cells do not tell. Test:
+    /// Maximum curvature, in 1/cells. Source: a ball of two cells radius; the cells do not resolve smaller ones. Test:
     /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
     float max_curvature = 1;
     /// Distance out of the surface, cells, from which on particles are drawn back. Test:
     /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
     float stray_distance = 0.1f;
-    /// Share of the distance beyond that by which a part of a step draws them back. Test:
+    /// Fraction of the distance beyond it by which a part of a step draws them back. Test:
     /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
     float stray_rate = 0.2f;
-    /// Slope of the liquid's share, in 1/cells, below which they have no surface to be drawn to. Test:
+    /// Slope of the liquid's volume fraction, in 1/cells, below which particles have no surface to be drawn to. Test:
     /// Settings.AreNoticed.
     float stray_min_slope = 0.01f;
 };

@@ -8,15 +8,15 @@
 
 namespace embody::physics {
 
-/// When a fluid falls asleep (src/physics/stages/fluid/fluids.cpp). What wakes a body that sleeps in it:
+/// When a fluid falls asleep (src/physics/stages/fluid/fluids.cpp). When it wakes a body that sleeps in it:
 /// OptimizationSettings::wake_force_fraction.
 struct FluidSleepSettings {
     /// Speed below which all particles but a few drops are quiet, m/s. Test: Settings.AreNoticed.
     double quiet_speed = 0.01;
     /// How long a fluid has to be quiet, s. Test: FluidContainer.WaterDroppedIntoATubComesToRestAndSleeps.
     double time_to_sleep = 1;
-    /// Speed at which the particles' middle may sink meanwhile, cells a second: honey that runs is slower than water at
-    /// rest trembles. Test: FluidSpill.HoneyThatStillRunsDoesNotSleep.
+    /// Maximum speed at which the particles' centroid may sink meanwhile, cells a second: running honey is slower than
+    /// the jitter of water at rest. Test: FluidSpill.HoneyThatStillRunsDoesNotSleep.
     double max_sinking_speed = 0.02;
 };
 
@@ -28,13 +28,13 @@ inline constexpr auto settings_of<FluidSleepSettings> = std::tuple{
 };
 static_assert(setting_count<FluidSleepSettings> == member_count<FluidSleepSettings>(), "a setting is in no list");
 
-/// Steps that heaps of grains need (substeps_for_grains in definitions/grain_material.h).
+/// Substeps that piles of grains need (substeps_for_grains in definitions/grain_material.h).
 struct GrainSettings {
-    /// A part of a step over the time √(d/g) in which a grain falls its own diameter d: from 0.05 on heaps come out
+    /// Length of a substep over the time √(d/g) in which a grain falls its own diameter d: from 0.05 on piles come out
     /// steeper. Source: docs/physics/grains.md, "Steps". Test:
     /// GrainSteps.AreFinerForSmallerGrainsAndNeverCoarserThanAskedFor.
     double max_part = 0.047;
-    /// Substeps that a scene gets for its grains. Test: Settings.AreNoticed.
+    /// Maximum substeps that a scene gets for its grains. Test: Settings.AreNoticed.
     int max_substeps = 16;
 };
 

@@ -7,40 +7,42 @@
 
 namespace embody::physics {
 
-/// How many impacts are solved in a step, and how many bodies take part in one.
+/// Limits of the number of impacts solved in a step, and of the bodies in one impact.
 struct ImpactBudgetSettings {
-    /// Impacts of one contact in a step that may bounce; later ones do not (Zeno's ball). Test: Settings.AreNoticed.
+    /// Maximum number of bouncing impacts of one contact in a step; later ones do not bounce (Zeno's ball). Test:
+    /// Settings.AreNoticed.
     int max_bounces = 3;
-    /// Impacts of one contact in a step; then the contact solver stops it. Test: Settings.AreNoticed.
+    /// Maximum number of impacts of one contact in a step; after these the contact solver stops it. Test:
+    /// Settings.AreNoticed.
     int max_impacts = 5;
-    /// Product of the restitutions of a body's impacts in a step below which hardly any speed is left of the first one:
-    /// it bounces no more. Test: Settings.AreNoticed.
+    /// Product of the restitutions of a body's impacts in a step below which hardly any of the first speed is left: the
+    /// body bounces no more. Test: Settings.AreNoticed.
     double min_remaining_restitution = 0.05;
-    /// Bounces against heaps in a step, of all bodies together: the collapse of a large heap of bouncing bodies has no
-    /// end. Test: Settings.AreNoticed.
+    /// Maximum number of bounces against piles in a step, of all bodies together: the collapse of a large pile of
+    /// bouncing bodies has no end. Test: Settings.AreNoticed.
     std::size_t pile_bounces = 500;
-    /// Awake bodies for each of which there is one more bounce against heaps. Test: Settings.AreNoticed.
+    /// Number of awake bodies for which one more bounce against piles is allowed. Test: Settings.AreNoticed.
     std::size_t bodies_per_pile_bounce = 8;
-    /// Bodies and joints of jointed assemblies that cost as much as a bounce against a heap. Test:
+    /// Number of bodies and joints of jointed assemblies that cost as much as a bounce against a pile. Test:
     /// JointedImpact.ManyBlowsOnOneAssemblyReachALimitAndGainNothing.
     std::size_t nodes_per_bounce = 32;
-    /// Predicted impacts that are looked at in a step, whatever the contacts. Test: Settings.AreNoticed.
+    /// Predicted impacts that may be handled in a step, however few the contacts. Test: Settings.AreNoticed.
     std::size_t base_events = 64;
-    /// Predicted impacts besides, for each contact. Test: Settings.AreNoticed.
+    /// Further predicted impacts for each contact. Test: Settings.AreNoticed.
     std::size_t events_per_contact = 32;
-    /// Sites of one collision beyond which no other contact joins in; what else collides has events of its own. Test:
-    /// Settings.AreNoticed.
+    /// Number of sites of one collision beyond which no other contact is added; further contacts have events of their
+    /// own. Test: Settings.AreNoticed.
     std::size_t max_simultaneous_sites = 64;
-    /// Share of a step by which impacts may be apart that are as simultaneous as mirror images. Source: rounding leaves
-    /// 1e-12 between these. Test: Settings.AreNoticed.
+    /// Fraction of a step within which impacts are simultaneous. Source: rounding leaves 1e-12 between mirror images.
+    /// Test: Settings.AreNoticed.
     double simultaneous_fraction = 1e-6;
-    /// Share of a step by which impacts on a heap may be apart that may change places. Test: Settings.AreNoticed.
+    /// Fraction of a step within which impacts on a pile may change their order. Test: Settings.AreNoticed.
     double pile_order_fraction = 0.02;
-    /// Jointed bodies that an impact acts on in the same instant; farther ones learn of it from the substeps. Test:
-    /// Settings.AreNoticed.
+    /// Maximum number of jointed bodies that an impact acts on in the same instant; the substeps pass it on to farther
+    /// ones. Test: Settings.AreNoticed.
     std::size_t max_jointed_bodies = 64;
-    /// Jointed bodies up to which an assembly is taken to the moment of its impact as the substeps will move it. Test:
-    /// Settings.AreNoticed.
+    /// Number of jointed bodies up to which an assembly is moved to the moment of its impact as the substeps will move
+    /// it. Test: Settings.AreNoticed.
     std::size_t max_flown_bodies = 8;
 };
 

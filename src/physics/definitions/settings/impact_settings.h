@@ -9,42 +9,43 @@ namespace embody::physics {
 
 /// When bodies collide, and where (src/physics/stages/impact).
 struct ImpactSettings {
-    /// Speed of approach below which surfaces rest on each other, m/s; of balls that roll together, too. Test:
+    /// Speed of approach below which surfaces rest on each other, m/s; also for balls that roll together. Test:
     /// Settings.AreNoticed.
     double min_impact_speed = 0.02;
-    /// The same of contacts that carry a load or do not bounce, over min_impact_speed: the contact solver stops them as
-    /// well. Test: Settings.AreNoticed.
+    /// The same speed for contacts that carry a load or do not bounce, over min_impact_speed: the contact solver stops
+    /// these as well as an impact would. Test: Settings.AreNoticed.
     double loaded_speed_ratio = 5;
-    /// Substeps of gravity along the normal that an impact is at least as fast as: what rests is pressed by one. Test:
-    /// Settings.AreNoticed.
+    /// Minimum speed of an impact, in the speed that gravity along the normal gives in a substep: resting bodies are
+    /// pressed by one substep of it. Test: Settings.AreNoticed.
     double min_impact_substeps = 2;
     /// Gap at which bodies touch, m. Test: Settings.AreNoticed.
     double touch_gap = 1e-6;
-    /// Gap of corners to the first one that collide together with it, m: what they touch gives way for longer than
-    /// that. Test: Settings.AreNoticed.
+    /// Maximum gap of corners that collide together with the first one, m: a surface deforms by more than that. Test:
+    /// Settings.AreNoticed.
     double patch_gap = 5e-4;
-    /// Turn in a step above which other corners may touch than were found at its start, rad. Test: Settings.AreNoticed.
+    /// Turn of a body in a step above which other corners may touch than those found at the start, rad. Test:
+    /// Settings.AreNoticed.
     double max_followed_turn = 0.25;
-    /// Points of the regula falsi for the moment of touch. Test: Settings.AreNoticed.
+    /// Maximum points of the regula falsi for the moment of touch. Test: Settings.AreNoticed.
     int root_iterations = 8;
     /// Gap up to which surfaces are looked for at the moment of an impact, m. Test: Settings.AreNoticed.
     double search_margin = 0.02;
-    /// Rounds in which the place and the moment of an impact are found. Test: Settings.AreNoticed.
+    /// Maximum iterations that find the place and the moment of an impact. Test: Settings.AreNoticed.
     int refine_iterations = 8;
-    /// The same of what hits a heap and does not bounce. Test: Settings.AreNoticed.
+    /// The same for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
     int rough_refine_iterations = 4;
-    /// Gap over patch_gap up to which the last of these rounds is good enough. Test: Settings.AreNoticed.
+    /// Gap over patch_gap up to which the last of these iterations is accurate enough. Test: Settings.AreNoticed.
     double refine_gap_ratio = 10;
-    /// The same of what hits a heap and does not bounce. Test: Settings.AreNoticed.
+    /// The same for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
     double rough_refine_gap_ratio = 2;
-    /// Share of the smaller body's size by which a pair may have moved since the start of the step for its contact to
-    /// be right still, where what hits a heap does not bounce. Test: Settings.AreNoticed.
+    /// Displacement of a pair since the start of the step, over the smaller body's size, up to which its contact is
+    /// still accurate enough, for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
     double region_travel_fraction = 0.05;
-    /// Restitution from which on bodies that touch pass a blow on one by one, as the balls of Newton's cradle do.
+    /// Restitution from which on bodies that touch pass an impact on one by one, as the balls of Newton's cradle do.
     /// Source: half of the energy comes back, 0.7² = 0.49. Test: Settings.AreNoticed.
     double elastic_restitution = 0.7;
-    /// Share by which joints may change what they hold otherwise than in the last step, where contacts are left open
-    /// for it. Test: Settings.AreNoticed.
+    /// Relative change of a joint's effect since the last step that is allowed for where contacts are left open for it.
+    /// Test: Settings.AreNoticed.
     double held_acceleration_tolerance = 0.1;
     ImpactBudgetSettings budget;
     ImpactSolverSettings solver;

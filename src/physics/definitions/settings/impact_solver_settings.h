@@ -9,39 +9,41 @@ namespace embody::physics {
 
 /// How one collision of several sites is solved (src/physics/constraint/impact).
 struct ImpactSolverSettings {
-    /// Share of the fastest decay of the sliding that one step of integration spans in a first compression. Source:
+    /// Step of integration in a first compression, over the time of the fastest decay of the sliding. Source:
     /// Runge-Kutta of order 4 is wrong by about x⁵/120 a step, 8e-6. Test: Settings.AreNoticed.
     double step_fraction = 0.25;
-    /// Share of a step within which the end of that compression is found. Test: Settings.AreNoticed.
+    /// Fraction of a step within which the end of that compression is found. Test: Settings.AreNoticed.
     double end_fraction = 1e-6;
-    /// Sliding that is none, over the speed of approach; after a first compression. Test: Settings.AreNoticed.
+    /// Sliding speed that counts as none, over the speed of approach; after a first compression. Test:
+    /// Settings.AreNoticed.
     double slide_tolerance = 1e-5;
-    /// step_fraction of later compressions, which change little, and of heaps. Test: Settings.AreNoticed.
+    /// step_fraction of later compressions, which change little, and of piles. Test: Settings.AreNoticed.
     double rough_step_fraction = 0.5;
-    /// end_fraction of these. Test: Settings.AreNoticed.
+    /// end_fraction of later compressions and of piles. Test: Settings.AreNoticed.
     double rough_end_fraction = 1e-3;
-    /// slide_tolerance of these. Test: Settings.AreNoticed.
+    /// slide_tolerance of later compressions and of piles. Test: Settings.AreNoticed.
     double rough_slide_tolerance = 1e-3;
     /// step_fraction of the expansion of a site that collides alone. Source: as above, 8e-8 a step. Test:
     /// Settings.AreNoticed.
     double expansion_step_fraction = 0.1;
-    /// end_fraction of that expansion: to the last digits, so that what bounces without friction keeps its energy.
-    /// Test: Settings.AreNoticed.
+    /// end_fraction of that expansion: to the last digits, so that a body that bounces without friction keeps its
+    /// energy. Test: Settings.AreNoticed.
     double expansion_end_fraction = 1e-13;
-    /// Cosine of a slide's turn in a first compression above which it goes along its mean direction. Test:
+    /// Cosine of a slide's turn in a first compression above which the slide is taken along its mean direction. Test:
     /// ImpactGroup.EstimatedSlidesEndAsFollowedOnesAndAddNoEnergy.
     double straight_cosine = 0.9;
-    /// The same in later compressions. Test: Settings.AreNoticed.
+    /// The same cosine in later compressions. Test: Settings.AreNoticed.
     double straight_cosine_later = 0.5;
-    /// Speed of approach that compression may leave, over the fastest at the start. Test: Settings.AreNoticed.
+    /// Maximum speed of approach that compression leaves, over the fastest approach at the start. Test:
+    /// Settings.AreNoticed.
     double approach_tolerance = 1e-4;
-    /// The same of many sites and of heaps: the substeps hold what is left. Test: Settings.AreNoticed.
+    /// The same speed for many sites and for piles: the substeps stop what is left. Test: Settings.AreNoticed.
     double rough_approach_tolerance = 1e-2;
-    /// Sites above which they are many. Test: Settings.AreNoticed.
+    /// Number of sites above which they count as many. Test: Settings.AreNoticed.
     std::size_t rough_sites = 8;
-    /// Compressions of one collision, whatever its sites. Test: Settings.AreNoticed.
+    /// Maximum compressions of one collision, however few its sites. Test: Settings.AreNoticed.
     std::size_t base_iterations = 64;
-    /// Compressions besides, for each site. Test: Settings.AreNoticed.
+    /// Further compressions for each site. Test: Settings.AreNoticed.
     std::size_t iterations_per_site = 64;
 };
 

@@ -7,51 +7,52 @@ namespace embody::physics {
 
 /// Joints: all at once (src/physics/constraint/joint) and one by one (sweeps/substep_solver).
 struct JointSettings {
-    /// Speed up to which errors are mended, m/s, rad/s: bodies that a user joined far apart come together instead of
-    /// bursting. Test: Settings.AreNoticed.
+    /// Maximum speed at which errors are corrected, m/s, rad/s: bodies that a user joined far apart come together
+    /// without bursting. Test: Settings.AreNoticed.
     double max_correction_speed = 5;
-    /// Turn of a body in a substep above which its pose after the drift tells nothing, rad; the speed of the rows then
-    /// stands for the way. Test: Settings.AreNoticed.
+    /// Turn of a body in a substep above which its pose after the drift is useless, rad; the speed of the rows is then
+    /// used in place of the displacement. Test: Settings.AreNoticed.
     double max_drift_turn = 1;
-    /// Speed of a row at which it is solved, m/s, rad/s. Source: far above the rounding of doubles, 1e-16 of the
-    /// speeds, and 0.1 µm of drift in a thousand seconds. Test: Settings.AreNoticed.
+    /// Remaining speed of a row below which the row is solved, m/s, rad/s. Source: far above the rounding of doubles,
+    /// 1e-16 of the speeds, and 0.1 µm of drift in a thousand seconds. Test: Settings.AreNoticed.
     double speed_tolerance = 1e-10;
-    /// The same where rounds get no further, m/s, rad/s. Test: Settings.AreNoticed.
+    /// The same speed where iterations make no further progress, m/s, rad/s. Test: Settings.AreNoticed.
     double rounding_tolerance = 1e-6;
-    /// The same from which no round leads back, m/s, rad/s. Test: Settings.AreNoticed.
+    /// Speed of a row above which the method is taken as diverged, m/s, rad/s. Test: Settings.AreNoticed.
     double divergence_speed = 1e6;
-    /// Error of a round over the last one's above which rounding allows no less. Test: Settings.AreNoticed.
+    /// Error of an iteration over the last one's above which rounding allows no further progress. Test:
+    /// Settings.AreNoticed.
     double stagnation_ratio = 0.25;
-    /// Error of a round over the last one's above which the next round factorises anew. Source: one digit a round, the
-    /// modified Newton method. Test: Settings.AreNoticed.
+    /// Error of an iteration over the last one's above which the next iteration factorises anew. Source: one digit an
+    /// iteration, the modified Newton method. Test: Settings.AreNoticed.
     double refactor_ratio = 0.1;
-    /// Error of a round over the last one's above which the method is taken as diverging, after nonmonotone_iterations.
-    /// Test: Settings.AreNoticed.
+    /// Error of an iteration over the last one's above which the method is taken as diverging, after
+    /// nonmonotone_iterations. Test: Settings.AreNoticed.
     double max_error_ratio = 0.5;
-    /// Rounds of Newton's method in which the error may rise. Source: L. Grippo et al., "A nonmonotone line search
+    /// Iterations of Newton's method in which the error may rise. Source: L. Grippo et al., "A nonmonotone line search
     /// technique for Newton's method", 1986. Test: Settings.AreNoticed.
     int nonmonotone_iterations = 4;
-    /// Rounds of Newton's method. Test: Settings.AreNoticed.
+    /// Maximum iterations of Newton's method. Test: Settings.AreNoticed.
     int max_iterations = 20;
-    /// Times that a substep is halved where the method diverges. Test: Settings.AreNoticed.
+    /// Maximum number of times that a substep is halved where the method diverges. Test: Settings.AreNoticed.
     int max_halvings = 4;
-    /// Share by which joints may seem to do work before the velocities are scaled. Source: rounding leaves 1e-15 a
-    /// joint. Test: Settings.AreNoticed.
+    /// Relative energy error up to which joints may seem to do work without the velocities being scaled. Source:
+    /// rounding leaves 1e-15 a joint. Test: Settings.AreNoticed.
     double energy_tolerance = 1e-9;
-    /// Compliance E of a row over its own J M⁻¹ Jᵀ: rows of a loop may say the same thing. Source: far above the
-    /// rounding of 1e-16, and the next round takes back what it lets through. Test: Settings.AreNoticed.
+    /// Compliance E of a row over its own J M⁻¹ Jᵀ: rows of a loop may be redundant. Source: far above the rounding of
+    /// 1e-16, and the next iteration corrects the error that it makes. Test: Settings.AreNoticed.
     double regularisation = 1e-10;
-    /// Joints times passes for a list that is too long for all at once. Test: Settings.AreNoticed.
+    /// Joints times passes for a list that is too long to be solved at once. Test: Settings.AreNoticed.
     int sweep_budget = 512;
-    /// Passes over such a list in each phase. Test: Settings.AreNoticed.
+    /// Minimum passes over such a list in each phase. Test: Settings.AreNoticed.
     int min_sweeps = 4;
-    /// Passes over a short one, unless its error is gone. Test: Settings.AreNoticed.
+    /// Maximum passes over a short list, unless its error is gone. Test: Settings.AreNoticed.
     int max_sweeps = 64;
-    /// Speed left of a row, m/s, rad/s, above which the impulses are no guess for the next substep: they would swing
-    /// up. Test: Settings.AreNoticed.
+    /// Remaining speed of a row, m/s, rad/s, above which the impulses are no guess for the next substep: their
+    /// oscillation would grow. Test: Settings.AreNoticed.
     double warm_start_tolerance = 1e-3;
-    /// Share of the speed kept where contacts gave a jointed island energy, at or below which their impulses are no
-    /// guess for the next substep. Test: Settings.AreNoticed.
+    /// Fraction of the speed that is kept where contacts added energy to a jointed island, at or below which their
+    /// impulses are no guess for the next substep. Test: Settings.AreNoticed.
     double warm_start_kept_fraction = 0.7;
 };
 

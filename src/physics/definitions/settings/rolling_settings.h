@@ -10,29 +10,31 @@ namespace embody::physics {
 
 /// Bodies of revolution that roll on something flat (src/physics/constraint/rolling/rolling_body.cpp).
 struct RollingBodySettings {
-    /// Gap of the higher end of a line that touches along its length, m. Test: Settings.AreNoticed.
+    /// Maximum gap of the higher end of a line that touches along its length, m. Test: Settings.AreNoticed.
     double side_gap = 5e-5;
-    /// Slip, over the speed of turning of the farthest point, that is stopped at the start of a step. Test:
+    /// Maximum slip that is stopped at the start of a step, over the speed of the farthest point by turning. Test:
     /// Settings.AreNoticed.
     double max_slip_fraction = 0.05;
-    /// Slip that is stopped besides, m/s. Test: Settings.AreNoticed.
+    /// Maximum slip that is stopped besides, m/s. Test: Settings.AreNoticed.
     double max_slip_speed = 0.01;
-    /// Sine of the angle between axis and normal below which the rim lies on the ground. Test: Settings.AreNoticed.
+    /// Sine of the angle between axis and normal below which the rim lies flat on the ground. Test:
+    /// Settings.AreNoticed.
     double min_lean = 0.005;
-    /// Turn of the axis in a step below which the contact solver loses nothing, rad. Test: Settings.AreNoticed.
+    /// Turn of the axis in a step below which the contact solver loses no energy, rad. Test: Settings.AreNoticed.
     double min_axis_turn = 1e-3;
-    /// Turn of the body in a step above which the contact solver's small turns are none, rad. Test:
+    /// Turn of the body in a step above which the contact solver's approximation of small turns fails, rad. Test:
     /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
     double min_turn = 0.5;
-    /// Turn in a part of the step, rad. Test: Rolling.SpunCoinGoesOnSpinning.
+    /// Maximum turn in a part of the step, rad. Test: Rolling.SpunCoinGoesOnSpinning.
     double part_turn = 0.08;
-    /// Parts of a step; what needs more is the contact solver's. Test:
+    /// Maximum number of parts of a step; the contact solver takes what needs more. Test:
     /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
     int max_parts = 400;
-    /// Share of the energy that Runge-Kutta may miss in a step; it is put right. Test: Settings.AreNoticed.
-    double max_energy_error = 1e-3;
-    /// Contacts of a body that may roll: what rolls on still faces has two rims on two neighbouring triangles. Test:
+    /// Maximum relative error of the energy that Runge-Kutta makes in a step; it is corrected. Test:
     /// Settings.AreNoticed.
+    double max_energy_error = 1e-3;
+    /// Maximum number of contacts of a rolling body: a body that rolls on still faces has two rims on two neighbouring
+    /// triangles. Test: Settings.AreNoticed.
     std::uint32_t max_contacts = 8;
 };
 
@@ -51,13 +53,13 @@ inline constexpr auto settings_of<RollingBodySettings> = std::tuple{
 };
 static_assert(setting_count<RollingBodySettings> == member_count<RollingBodySettings>(), "a setting is in no list");
 
-/// What is taken along the ground by its own equations (src/physics/constraint/rolling).
+/// Bodies that are moved along the ground by their own equations (src/physics/constraint/rolling).
 struct RollingSettings {
     /// Gap beyond which a ball or a ring does not touch the ground, m. Test: Settings.AreNoticed.
     double touch_gap = 2e-4;
-    /// Speed towards the ground above which what did not touch it has an impact, m/s. Test: Settings.AreNoticed.
+    /// Speed towards the ground above which a body that did not touch it has an impact, m/s. Test: Settings.AreNoticed.
     double max_approach_speed = 0.05;
-    /// Speed of parting from the ground above which a ball leaves it, m/s. Test: Settings.AreNoticed.
+    /// Separating speed above which a ball leaves the ground, m/s. Test: Settings.AreNoticed.
     double max_parting_speed = 1e-3;
     BallPathSettings ball;
     BallClusterSettings cluster;

@@ -9,35 +9,36 @@ namespace embody::physics {
 
 /// Soft solids: their elements and their step (src/physics/deformable/solid).
 struct SolidSettings {
-    /// Share of the volume whose deformation the means around the nodes tell; the tetrahedra, which bend too stiffly,
-    /// tell the rest. Source: G. R. Liu, T. Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008. Test:
-    /// SoftSolid.ACantileverBendsByItsOwnWeight.
+    /// Fraction of the volume whose deformation is that of the means around the nodes; the rest has that of the
+    /// tetrahedra, which bend too stiffly. Source: G. R. Liu, T. Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element
+    /// method", 2008. Test: SoftSolid.ACantileverBendsByItsOwnWeight.
     double node_fraction = 0.7;
-    /// Plastic strain beyond which matter flows no further, so that nothing is rolled out to nothing. Source: J. F.
-    /// O'Brien, A. W. Bargteil, J. K. Hodgins, "Graphical modeling and animation of ductile fracture", 2002, bound it
-    /// too. Test: Settings.AreNoticed.
+    /// Plastic strain beyond which matter flows no further, so that no element is rolled out to zero thickness. Source:
+    /// J. F. O'Brien, A. W. Bargteil, J. K. Hodgins, "Graphical modeling and animation of ductile fracture", 2002,
+    /// bound it too. Test: Settings.AreNoticed.
     double max_plastic_strain = 0.5;
-    /// Half the turn in a substep below which damping takes the rotation at the substep's start for that at its end,
-    /// rad. Source: its square, what the stretch is wrong by, is 1e-6. Test: Settings.AreNoticed.
+    /// Half the turn in a substep below which damping uses the rotation at the substep's start for that at its end,
+    /// rad. Source: the error of the stretch is its square, 1e-6. Test: Settings.AreNoticed.
     double same_rotation_turn = 1e-3;
-    /// Share of its volume at rest below which enclosed gas presses no harder. Test: Settings.AreNoticed.
+    /// Fraction of its volume at rest below which the pressure of enclosed gas grows no further. Test:
+    /// Settings.AreNoticed.
     double min_gas_fraction = 0.05;
     /// True stiffness along a move over the metric's above which the factor is made anew. Source: a move by the metric
     /// goes too far by the ratio less 1, so moves grow from a ratio of 2 on. Test: Settings.AreNoticed.
     double max_stiffness_ratio = 1.3;
-    /// Further rounds in a substep for solids whose moves make energy. Test: Settings.AreNoticed.
+    /// Maximum further iterations in a substep for solids whose moves add energy. Test: Settings.AreNoticed.
     int max_corrections = 3;
-    /// Share of its energy that a solid may gain in a substep, by rounding and by rotations that lag. Test:
+    /// Maximum energy that a solid may gain in a substep, over its energy, by rounding and by rotations that lag. Test:
     /// SoftSolid.AnImpactAtAnySpeedMakesNoEnergy.
     double max_energy_gain = 0.01;
-    /// Travel of the fastest node in a substep, of a triangle's mean side, below which no energy is measured. Source:
-    /// rotations lag by about that many radians, the energy of a strain is wrong by its square. Test:
+    /// Travel of the fastest node in a substep, over a triangle's mean side, below which no energy is measured. Source:
+    /// rotations lag by about that many radians, and the error of a strain's energy is the square of that. Test:
     /// Settings.AreNoticed.
     double energy_travel_fraction = 0.02;
-    /// How often a move that makes energy is halved, the last time to nothing. Test: Settings.AreNoticed.
+    /// How often a move that adds energy is halved; the last time it becomes zero. Test: Settings.AreNoticed.
     int max_halvings = 4;
-    /// Turn by which the velocities of a new solid are turned back at most, rad: half a substep, where the whole turns
-    /// by no more than it can follow. Test: Settings.AreNoticed.
+    /// Maximum turn by which the velocities of a new solid are turned back, rad: that of half a substep, where the
+    /// solid's spin is slow enough to be followed. Test: Settings.AreNoticed.
     double max_turn_back = 0.3;
 };
 
@@ -56,55 +57,56 @@ inline constexpr auto settings_of<SolidSettings> = std::tuple{
 };
 static_assert(setting_count<SolidSettings> == member_count<SolidSettings>(), "a setting is in no list");
 
-/// Contacts of soft solids with bodies and each other: which there are, and their forces.
+/// Contacts of soft solids with bodies and each other: how they are found, and their forces.
 struct SolidContactSettings {
-    /// Rounds of sweeps and a solve of all forces at once. Source of the method: M. Silcowitz, S. Niebe, K. Erleben,
-    /// "Projected Gauss-Seidel subspace minimization method", 2010. Test: Settings.AreNoticed.
+    /// Maximum iterations, each of sweeps and a solve of all forces at once. Source of the method: M. Silcowitz, S.
+    /// Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010. Test: Settings.AreNoticed.
     int max_iterations = 5;
-    /// Sweeps over the contacts in a round. Test: Settings.AreNoticed.
+    /// Sweeps over the contacts in an iteration. Test: Settings.AreNoticed.
     int sweeps_per_iteration = 2;
-    /// Sweeps with conjugate directions after the rounds, where these have not converged. Source of the method: the
-    /// same, "A nonsmooth nonlinear conjugate gradient method", 2010. Test: Settings.AreNoticed.
+    /// Maximum sweeps with conjugate directions after the iterations, where these have not converged. Source of the
+    /// method: the same authors, "A nonsmooth nonlinear conjugate gradient method", 2010. Test: Settings.AreNoticed.
     int max_conjugate_sweeps = 10;
-    /// Iterations of the solve of all forces at once. Test: Settings.AreNoticed.
+    /// Maximum iterations of the solve of all forces at once. Test: Settings.AreNoticed.
     int gradient_iterations = 8;
-    /// Share of the first residual's square, in the preconditioner's norm, at which that solve ends. Test:
+    /// Square of the residual over that of the first one, in the preconditioner's norm, at which that solve ends. Test:
     /// Settings.AreNoticed.
     double gradient_tolerance = 0.01;
-    /// Move of any contact in the last sweep below which the forces have converged, m. Test: Settings.AreNoticed.
+    /// Displacement of any contact in the last sweep below which the forces have converged, m. Test:
+    /// Settings.AreNoticed.
     double sweep_tolerance = 2e-6;
-    /// The same, of the moves of the first sweeps: forces are kept for the next substep. Test: Settings.AreNoticed.
+    /// The same, over the displacements of the first sweeps: forces are kept for the next substep. Test:
+    /// Settings.AreNoticed.
     double sweep_tolerance_of_first = 0.05;
-    /// The same, of the longest way that two things slide or close in the substep. Test: Settings.AreNoticed.
+    /// The same, over the maximum travel by which any pair slides or closes in the substep. Test: Settings.AreNoticed.
     double sweep_tolerance_of_slip = 0.02;
-    /// A contact that would move by less is left as it is in a sweep, m. Source: a twentieth of sweep_tolerance. Test:
+    /// Displacement below which a contact is left as it is in a sweep, m. Source: a twentieth of sweep_tolerance. Test:
     /// Settings.AreNoticed.
     double idle_move = 1e-7;
-    /// Compliance of a contact along its normal beside that of the things: where contacts say the same of a place, all
-    /// bear a part. Test: Settings.AreNoticed.
+    /// Compliance of a contact along its normal over that of what it touches: where contacts are redundant, each bears
+    /// a part of the load. Test: Settings.AreNoticed.
     double softness = 0.01;
-    /// Speed at which what overlaps, or is off what it is attached to, comes back, m/s. Test:
+    /// Maximum speed at which overlaps and errors of attachments are corrected, m/s. Test:
     /// SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
     double recovery_speed = 0.5;
-    /// Gap beyond which contacts without force stay out of the sweeps, of the contact radius. Test:
-    /// Settings.AreNoticed.
+    /// Gap beyond which contacts without force stay out of the sweeps, in contact radii. Test: Settings.AreNoticed.
     double reach_radii = 1;
-    /// Share of one thing's volume within another from which on they are parted as a whole: no contact that closed lets
+    /// Fraction of one solid's volume within another from which on the two are separated as a whole: contacts never let
     /// so much in. Test: SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
     double parting_fraction = 0.125;
-    /// Depth of the points that count for that, of a triangle's mean side: no contact that closed in a step leaves a
-    /// node so deep. Test: SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
+    /// Depth of the points that count for that fraction, over a triangle's mean side: contacts never leave a node so
+    /// deep in a step. Test: SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
     double parting_depth = 0.5;
-    /// The same while they part: until none is so deep. Test: Settings.AreNoticed.
+    /// The same depth while the two are being separated: until no point is so deep. Test: Settings.AreNoticed.
     double parted_depth = 0.1;
-    /// Points of a surface that are asked. Source: of 64 an eighth, parting_fraction, is told to a third of it. Test:
-    /// Settings.AreNoticed.
+    /// Number of sample points of a surface. Source: with 64, a fraction of an eighth, parting_fraction, is known to a
+    /// third. Test: Settings.AreNoticed.
     std::size_t parting_samples = 64;
-    /// Mean of a body's normals at the nodes within it above which its faces push to one side and part it by
+    /// Mean of a body's normals at the nodes within it above which its faces push to one side and separate the two by
     /// themselves. Test: Settings.AreNoticed.
     double one_side_cosine = 0.5;
-    /// Reach of a body, of a triangle's mean side, below which nodes may miss it: its corners and balls are looked for
-    /// besides. Test: SoftSolid.ABallSmallerThanItsElementsStaysOn.
+    /// Reach of a body, over a triangle's mean side, below which nodes may miss the body: contacts of its corners and
+    /// balls are looked for, too. Test: SoftSolid.ABallSmallerThanItsElementsStaysOn.
     double feature_body_ratio = 1.5;
 };
 

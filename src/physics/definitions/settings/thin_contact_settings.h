@@ -7,58 +7,59 @@ namespace embody::physics {
 
 /// Contacts, attachments and ties of sheets and ropes as springs with memory (src/physics/deformable/contact).
 struct ThinContactSettings {
-    /// Stiffness of a contact over what the node's neighbours resist with, or over the inertia of the heavier point.
-    /// Source: the method of multipliers, one round a substep, is stable from 1 on and converges the faster the
-    /// stiffer. Test: Settings.AreNoticed.
+    /// Stiffness of a contact over that of the node's neighbours, or over the inertia of the heavier point. Source: the
+    /// method of multipliers, one iteration a substep, is stable from 1 on and converges faster the stiffer it is.
+    /// Test: Settings.AreNoticed.
     double stiffness_factor = 20;
-    /// The same over the inertia of what weighs on a point. Test: Settings.AreNoticed.
+    /// The same over the inertia of the load on a point. Test: Settings.AreNoticed.
     double load_stiffness_factor = 4;
-    /// The same over the inertia of a body in which something begins, at that place. Test:
+    /// The same over the inertia of a body in which a node begins, at that place. Test:
     /// BeginsInside.AHeavyRopeDoesNotKickALightBox.
     double recovery_stiffness_factor = 2;
-    /// Speed at which what begins inside of something is parted from it, m/s. Test:
+    /// Speed at which a node that begins inside something is pushed out, m/s. Test:
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
     double recovery_speed = 0.2;
-    /// Share of an overlap of sheets and ropes that is parted in a substep. Source: R. Bridson, R. Fedkiw, J. Anderson,
-    /// "Robust treatment of collisions, contact and friction for cloth animation", 2002, part a tenth a step. Test:
-    /// Settings.AreNoticed.
+    /// Fraction of an overlap of sheets and ropes that is corrected in a substep. Source: R. Bridson, R. Fedkiw, J.
+    /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct a tenth a
+    /// step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
-    /// Overlap of a sheet's own layers, of both radii, from which on they remember no force: what is held within each
-    /// other would push ever harder. Test: Settings.AreNoticed.
+    /// Overlap of a sheet's own layers, over the sum of both radii, from which on their contacts remember no force:
+    /// layers that something holds in each other would push ever harder. Test: Settings.AreNoticed.
     double memory_depth = 0.2;
-    /// Weight above which a node bears what lies on a contact. Test: Settings.AreNoticed.
+    /// Barycentric weight above which a node bears the load on a contact. Test: Settings.AreNoticed.
     double min_load_weight = 0.1;
-    /// Share of the load that a contact has borne which it remembers from substep to substep. Test:
-    /// Settings.AreNoticed.
+    /// Fraction of the load of a contact that is remembered from substep to substep. Test: Settings.AreNoticed.
     double load_memory = 0.9;
-    /// Share of the contacts' forces below which a change of them is not worth a further solve. Test:
+    /// Change of the contacts' forces, over the forces, below which no further solve is made. Test:
     /// Settings.AreNoticed.
     double change_tolerance = 0.05;
-    /// Cosine of the turn of a contact's normal up to which it goes on with its force: another face is another contact.
-    /// Test: Settings.AreNoticed.
+    /// Cosine of the turn of a contact's normal up to which the contact keeps its force: another face is another
+    /// contact. Test: Settings.AreNoticed.
     double same_normal_cosine = 0.8;
-    /// The same up to which a point of a sheet or rope knows on which side of another it is. Test: Settings.AreNoticed.
+    /// The same turn up to which a point of a sheet or rope remembers on which side of another it is. Test:
+    /// Settings.AreNoticed.
     double same_side_cosine = 0.5;
-    /// Way of a point on the wrong side beyond which it has gone through for good, of both radii. Test:
+    /// Depth of a point on the wrong side beyond which it has gone through for good, over the sum of both radii. Test:
     /// Settings.AreNoticed.
     double max_wrong_side_radii = 3;
     /// Cosine between normals below which a node touches a further triangle of the same sheet. Test:
     /// Settings.AreNoticed.
     double other_normal_cosine = 0.5;
-    /// Cosine between normals above which nodes of two edges hold these off each other already. Test:
+    /// Cosine between normals above which the nodes of two edges already keep the edges apart. Test:
     /// Settings.AreNoticed.
     double held_edge_cosine = 0.7;
-    /// Energy that a body may get of springs over that of its move in the solve. Test:
+    /// Maximum energy that springs may give a body, over that of its move in the solve. Test:
     /// RopeOnBodies.NoMassAndNoArmMakesEnergy.
     double max_energy_ratio = 4;
-    /// Speed by which springs may push a body without that, m/s. Test: Settings.AreNoticed.
+    /// Speed up to which springs may push a body without that limit, m/s. Test: Settings.AreNoticed.
     double free_push_speed = 0.5;
-    /// Acceleration that stands for gravity where that is weaker, m/s²: by it loads are told from forces, and accuracy
-    /// is measured. Test: Settings.AreNoticed.
+    /// Minimum of the acceleration that stands for gravity, m/s²: forces are turned into loads by it, and accuracy is
+    /// measured by it. Test: Settings.AreNoticed.
     double min_gravity = 1;
-    /// Rounds that give what nothing holds its momenta back. Test: Settings.AreNoticed.
+    /// Iterations that restore the momenta of what nothing holds. Test: Settings.AreNoticed.
     int momentum_iterations = 5;
-    /// Turn in a substep beyond which they do not, rad: arms turn along a line no longer. Test: Settings.AreNoticed.
+    /// Turn in a substep beyond which they are not restored, rad: the arms' motion is then no longer linear. Test:
+    /// Settings.AreNoticed.
     double max_momentum_turn = 0.1;
 };
 
@@ -86,26 +87,27 @@ inline constexpr auto settings_of<ThinContactSettings> = std::tuple{
 };
 static_assert(setting_count<ThinContactSettings> == member_count<ThinContactSettings>(), "a setting is in no list");
 
-/// Which contacts of sheets and ropes there are (src/physics/stages/deformable).
+/// How contacts of sheets and ropes are found (src/physics/stages/deformable).
 struct ThinSearchSettings {
-    /// Distance from the ends of a sheet's edge or triangle, of its length or as a weight, within which the contacts of
-    /// the ends hold. Test: Settings.AreNoticed.
+    /// Distance from the ends of a sheet's edge or triangle, over its length or as a weight, within which the ends'
+    /// contacts suffice. Test: Settings.AreNoticed.
     double sheet_end_fraction = 0.02;
-    /// The same of a rope's segment, whose capsules reach over their ends. Test: Settings.AreNoticed.
+    /// The same for a rope's segment, whose capsules reach over their ends. Test: Settings.AreNoticed.
     double segment_end_fraction = 0.05;
-    /// How far a body may look out between two nodes whose planes hold it, of the contact radius. Test:
+    /// Maximum height by which a body may stand out between two nodes whose planes hold it, in contact radii. Test:
     /// Settings.AreNoticed.
     double max_bulge_radii = 0.8;
-    /// Angle between such planes up to which they are of one face, rad, however short the edge. Test:
+    /// Angle between such planes up to which they belong to one face, rad, however short the edge. Test:
     /// Settings.AreNoticed.
     double max_plane_angle = 0.5;
     /// Cosine between a triangle's normal and the edges of a body's corner above which that corner does not poke into
     /// it. Test: Settings.AreNoticed.
     double corner_cosine = 0.3;
-    /// Cosine between the normals of a solid and, turned round, a body from which on a node between them feels the
-    /// solid alone. Test: ClothOnSolid.ABoxLiesOnABlanketOnAMattress.
+    /// Cosine between the normal of a solid and the reversed normal of a body from which on a node between them feels
+    /// the solid alone. Test: ClothOnSolid.ABoxLiesOnABlanketOnAMattress.
     double covered_cosine = 0.5;
-    /// Share a substep of what a sheet that has left a solid still pushes it with. Test: Settings.AreNoticed.
+    /// Fraction that is left after a substep of the force with which a sheet that has left a solid still pushes it.
+    /// Test: Settings.AreNoticed.
     double push_memory = 0.5;
 };
 

@@ -7,35 +7,36 @@ namespace embody::physics {
 
 /// Sheets and how their own layers are kept apart (src/physics/deformable/cloth, docs/physics/cloth.md).
 struct ClothSettings {
-    /// Linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
+    /// Maximum linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
     int max_solves = 4;
-    /// Residual at which a solve ends, of that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.
+    /// Residual at which a solve ends, over that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.
     /// Witkin, "Large steps in cloth simulation", 1998, section 5.3, end in that norm too. Test: Settings.AreNoticed.
     double gradient_tolerance = 5e-3;
-    /// Iterations of a solve. Test: Settings.AreNoticed.
+    /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
-    /// Parts of a substep for layers that are fast. Test: Settings.AreNoticed.
+    /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
     int max_parts = 4;
-    /// Way that layers pass each other in a part of a substep, of an edge's mean length. Source: beyond half an edge
-    /// the triangle that a node comes to is none that lay near it. Test: ClothSheet.LayersDoNotPassThroughEachOther.
+    /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
+    /// an edge a node comes to a triangle that was no candidate. Test: ClothSheet.LayersDoNotPassThroughEachOther.
     double max_layer_travel = 0.5;
-    /// Distance within which what is near in a sheet at rest is one layer, of the distance that layers keep. Source:
-    /// above the 2 within which contacts are looked for. Test: ClothLayers.OfAFlatSheetNothingIsNear.
+    /// Distance within which features of a sheet at rest belong to one layer, over the distance that layers keep.
+    /// Source: above the 2 within which contacts are looked for. Test: ClothLayers.OfAFlatSheetNothingIsNear.
     double same_layer_reach = 3;
-    /// Distance that layers keep where springs have failed, of that which springs keep. Test: Settings.AreNoticed.
+    /// Distance that layers keep where springs have failed, over the distance that springs keep. Test:
+    /// Settings.AreNoticed.
     double min_gap_fraction = 0.5;
-    /// Compliance of a node that lies on a body, of its own: what lies on a body gives way last. Test:
+    /// Compliance of a node that lies on a body, over its own compliance: a node on a body moves last. Test:
     /// Settings.AreNoticed.
     double compliance_on_body = 0.05;
-    /// Sweeps that push layers apart. Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of collisions,
-    /// contact and friction for cloth animation", 2002, go on with rigid zones after a few sweeps too. Test:
-    /// Settings.AreNoticed.
+    /// Maximum sweeps that push layers apart. Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of
+    /// collisions, contact and friction for cloth animation", 2002, go on with rigid zones after a few sweeps too.
+    /// Test: Settings.AreNoticed.
     int parting_iterations = 10;
-    /// Distance after these, of that before, below which nodes go together for the substep. Source of the method: X.
-    /// Provot, "Collision and self-collision handling in cloth model dedicated to design garments", 1997. Test:
-    /// Settings.AreNoticed.
+    /// Distance after these sweeps over that before below which nodes move together for the substep. Source of the
+    /// method: X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments", 1997.
+    /// Test: Settings.AreNoticed.
     double joining_gap_fraction = 0.2;
-    /// Rounds of that. Test: Settings.AreNoticed.
+    /// Maximum iterations of that. Test: Settings.AreNoticed.
     int joining_iterations = 20;
 };
 
@@ -57,22 +58,23 @@ static_assert(setting_count<ClothSettings> == member_count<ClothSettings>(), "a 
 
 /// Ropes (src/physics/deformable/rope, docs/physics/ropes.md), also where they are solved together with sheets.
 struct RopeSettings {
-    /// Rounds of Newton's method in a substep. Test: Settings.AreNoticed.
+    /// Maximum iterations of Newton's method in a substep. Test: Settings.AreNoticed.
     int max_iterations = 12;
-    /// Move of the fastest node in a round at which these end, of a segment's length. Test: Settings.AreNoticed.
+    /// Displacement of the fastest node in an iteration at which the iterations end, over a segment's length. Test:
+    /// Settings.AreNoticed.
     double move_tolerance = 1e-4;
-    /// The same where ropes are solved together with others: sheets are solved in floats and to gradient_tolerance.
-    /// Test: Settings.AreNoticed.
+    /// The same displacement where ropes are solved together with sheets, which are solved in floats and to
+    /// gradient_tolerance. Test: Settings.AreNoticed.
     double move_tolerance_together = 1e-3;
-    /// Share of a round's step below which the line search ends. Source: ten tries, each of half the step; where
-    /// the energy falls at all it has by then. Test: Settings.AreNoticed.
+    /// Fraction of an iteration's step below which the line search ends. Source: ten tries, each of half the step;
+    /// where the energy falls at all, it has fallen by then. Test: Settings.AreNoticed.
     double min_step_fraction = 1e-3;
     /// As ThinContactSettings::change_tolerance. Source: along a drum errors add up in the exponent. Test:
     /// RopeLine.GripsADrumAsACapstan.
     double change_tolerance = 0.005;
-    /// 1 + cosine between segments below which the curvature of a clamped rope ends to grow. Source: 0.02 is folded
-    /// back by 168 degrees; the curvature of M. Bergou et al., "Discrete elastic rods", 2008, eq. 1, goes to infinity
-    /// at 180. Test: Settings.AreNoticed.
+    /// 1 + cosine between segments below which the curvature of a clamped rope grows no further. Source: at 0.02 the
+    /// rope is folded back by 168 degrees; the curvature of M. Bergou et al., "Discrete elastic rods", 2008, eq. 1,
+    /// goes to infinity at 180. Test: Settings.AreNoticed.
     double fold_limit = 0.02;
 };
 
