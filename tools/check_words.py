@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Fails where a name in src/physics has a word that docs/glossary.md replaces by the field's.
 
-Usage: check_words.py [ROOT]   (default: the folder above this file)
+Usage: check_words.py [--comments] [ROOT]   (default: the folder above this file)
+--comments: reads comments, too, for those of the words that have no everyday use (all but everyday_words).
 """
 import pathlib
 import re
 import sys
+
+everyday_words = {"give", "patient", "share", "shares", "way", "ways"}  # banned in names alone
 
 
 def banned_words(glossary: pathlib.Path) -> tuple[set[str], set[str]]:
@@ -29,12 +32,20 @@ def names_in(text: str) -> list[tuple[int, str]]:
     return [(number, name) for number, line in enumerate(code.splitlines(), 1) for name in re.findall(r"[A-Za-z_]\w*", line)]
 
 
+def comment_words_in(text: str) -> list[tuple[int, str]]:
+    """Words of comments with their lines; names in backticks left out."""
+    return [(number, word) for number, line in enumerate(text.splitlines(), 1) if "//" in line
+            for word in re.findall(r"[A-Za-z]+", re.sub(r"`[^`]*`|\"(?:\\.|[^\"\\])*\"", "", line).partition("//")[2])]
+
+
 def words_of(name: str) -> set[str]:
     return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
 
 
 def main() -> int:
-    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
+    arguments = [argument for argument in sys.argv[1:] if argument != "--comments"]
+    reads_comments = len(arguments) < len(sys.argv) - 1
+    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parent.parent
     words, starts = banned_words(root / "docs" / "glossary.md")
     single = {word for word in words if "_" not in word}
     files = [p for p in sorted((root / "src" / "physics").rglob("*")) if p.suffix in (".h", ".cpp")]
@@ -45,6 +56,9 @@ def main() -> int:
             start = name.split("_", 1)[0] if "_" in name.rstrip("_") else ""
             if name in words or words_of(name) & single or start in starts:
                 wrong.append(f"{path.relative_to(root)}:{number}: {name}: see docs/glossary.md")
+        for number, word in comment_words_in(path.read_text()) if reads_comments else []:
+            if word.lower() in single - everyday_words:
+                wrong.append(f"{path.relative_to(root)}:{number}: comment: {word}: see docs/glossary.md")
     for line in wrong:
         print(line)
     print(f"{len(files)} files, {checked} names, {len(words) + len(starts)} words, {len(wrong)} wrong")
