@@ -3,8 +3,8 @@
 """Checks the numbers that steer the physics.
 
 Usage: check_settings.py [--list] [ROOT]   (default: the folder above this file)
-- Each setting of src/physics/definitions/settings has a comment with "Source: ...", "Bench: scene" or
-  "Test: Suite.Name, Suite.Name", and each of these tests exists. WorldSettings are what users set; they are not looked at.
+- Each setting of src/physics/definitions/settings has a comment with "Source: ...", "Bench: scene",
+  "Test: Suite.Name, Suite.Name", of which each exists, or "Open: ..." where nothing shows yet what it is good for. WorldSettings are what users set; they are not looked at.
 - Each other named constant that is a number, in src/physics, has a comment of what it bounds: on its line, on the line
   where its declaration ends, or on the line above it or above the constants before it. Sentinels and tags need none.
 --list prints the settings with where they come from.
@@ -38,7 +38,7 @@ def check_settings(path: pathlib.Path, tests: set, wrong: list, settings: list):
             continue
         comment = comment_above(lines, at)
         where = f"{path.name}:{at + 1}: {member[1]}"
-        origin = re.search(r"\b(Source|Test|Bench): (.+)", comment)
+        origin = re.search(r"\b(Source|Test|Bench|Open): (.+)", comment)
         if not origin:
             wrong.append(f"{where} has no source: write Source:, Test: or Bench: into the comment above it")
             continue
@@ -91,7 +91,8 @@ def main() -> int:
     if not settings or not tests:
         print("nothing was found: is this the right folder?")
         return 1
-    print(f"{len(settings)} settings, {len(wrong)} faults")
+    still_open = sum("Open: " in origin for _, _, origin in settings)
+    print(f"{len(settings)} settings, {still_open} of them open, {len(wrong)} faults")
     return 1 if wrong else 0
 
 

@@ -16,26 +16,26 @@ struct BallPathSettings {
     double part_travel_fraction = 0.5;
     /// Maximum number of parts of a step; the contact solver takes what needs more. Test: Settings.AreNoticed.
     int max_parts = 256;
-    /// Maximum number of times that a part is halved where the ground is not found. Test: Settings.AreNoticed.
+    /// Maximum number of times that a part is halved where the ground is not found. Open: no test reaches it.
     int max_halvings = 6;
-    /// Maximum number of planes of the ground that the ball is put onto in turn. Test: Settings.AreNoticed.
+    /// Maximum number of planes of the ground that the ball is put onto in turn. Open: no test reaches it.
     int settle_iterations = 8;
-    /// Speed below which a ball comes to rest, with a step of gravity added, m/s. Test: Settings.AreNoticed.
+    /// Speed below which a ball comes to rest, with a step of gravity added, m/s. Open: no test reaches it.
     double slow_speed = 2e-3;
     /// The same speed on ground that resists rolling, m/s. Test: Settings.AreNoticed.
     double slow_resisted_speed = 0.05;
     /// Depth from which on the ball's energy pays for lifting it out, m; up to that depth the contact solver carries
     /// it. Test: SleepOnlyInBalance.ABallRollsDownTheGentlestSlope.
     double min_sag = 1e-5;
-    /// Depth, in radii, beyond which the contact solver takes the ball out. Test: Settings.AreNoticed.
+    /// Depth, in radii, beyond which the contact solver takes the ball out. Open: no test reaches it.
     double max_depth_fraction = 0.1;
     /// Separating speed over the speed along the ground, besides max_parting_speed, above which a ball that does not
     /// bounce leaves the ground. Test: Settings.AreNoticed.
     double max_parting_fraction = 0.02;
     /// Slip over the speed up to which a ball rolls at the start of a step. Test: Settings.AreNoticed.
     double roll_slip_fraction = 1e-3;
-    /// Gap, in radii, up to which ground is looked for after a part, besides the gap that smooth edges make. Test:
-    /// Settings.AreNoticed.
+    /// Gap, in radii, up to which ground is looked for after a part, besides the gap that smooth edges make. Open: no
+    /// test reaches it.
     double settle_margin_fraction = 1e-3;
     /// Minimum of 1 + κ r, the width of a hollow over the ball's: a hollow that is narrower counts as this wide. Test:
     /// Settings.AreNoticed.

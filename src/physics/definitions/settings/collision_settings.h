@@ -26,21 +26,21 @@ struct CollisionSettings {
     /// is right to a hundredth of the travel. Test: Settings.AreNoticed.
     double follow_travel_round = 2e-5;
     /// Cosine between normals above which a contact with another triangle goes on from an old one of the same body.
-    /// Test: MeshSlide.a_smooth_flat_mesh_neither_brakes_nor_turns_nor_lifts.
+    /// Test: Settings.AreNoticed.
     double same_normal_cosine = 0.98;
     /// Reach of the points of a rolling contact, over the body's reach: farther points of the rim would move the anchor
-    /// of friction up to the axle. Test: Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
+    /// of friction up to the axle. Test: Settings.AreNoticed.
     double rim_reach_fraction = 0.1;
-    /// Gap at which an approaching body wakes a sleeper, m. Test: SleepingWorld.wakes_where_something_falls_on_it.
+    /// Gap at which an approaching body wakes a sleeper, m. Test: Settings.AreNoticed.
     double wake_gap = 1e-4;
     /// Gap that continuous collision leaves, m: the contact solver takes smaller gaps. Source: below contact_margin.
     /// Test: Settings.AreNoticed.
     double continuous_gap = 1e-3;
     /// Travel in a step, over its inner radius, up to which a body marked continuous is not swept; for other bodies it
-    /// is 1. Test: Continuous.two_bullets_toward_each_other_meet.
+    /// is 1. Test: Settings.AreNoticed.
     double continuous_travel_fraction = 0.25;
     /// Depth, over its inner radius, to which a body that slides along an obstacle may sink before it is stopped. Test:
-    /// Continuous.a_fast_slide_over_triangles_is_not_held_up_and_ends_at_a_wall_of_the_same_mesh.
+    /// Settings.AreNoticed.
     double continuous_slide_fraction = 0.25;
     /// Half the turn in a step below which contacts follow a body's ends by themselves, rad. Test:
     /// Continuous.a_spinning_rod_does_not_pass_a_thin_wall.

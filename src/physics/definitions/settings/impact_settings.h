@@ -36,7 +36,7 @@ struct ImpactSettings {
     int rough_refine_iterations = 4;
     /// Gap over patch_gap up to which the last of these iterations is accurate enough. Test: Settings.AreNoticed.
     double refine_gap_ratio = 10;
-    /// The same for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
+    /// The same for a body that hits a pile and does not bounce. Open: no test reaches it.
     double rough_refine_gap_ratio = 2;
     /// Displacement of a pair since the start of the step, over the smaller body's size, up to which its contact is
     /// still accurate enough, for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
@@ -45,7 +45,7 @@ struct ImpactSettings {
     /// Source: half of the energy comes back, 0.7² = 0.49. Test: Settings.AreNoticed.
     double elastic_restitution = 0.7;
     /// Relative change of a joint's effect since the last step that is allowed for where contacts are left open for it.
-    /// Test: Settings.AreNoticed.
+    /// Open: no test reaches it.
     double held_acceleration_tolerance = 0.1;
     ImpactBudgetSettings budget;
     ImpactSolverSettings solver;

@@ -10,8 +10,7 @@ namespace embody::physics {
 /// Shock propagation, which solver an island gets, sleep (src/physics/optimization).
 struct OptimizationSettings {
     /// Number of levels of an island from which on shock propagation corrects the remaining penetration; for lower
-    /// islands the contact solver's own correction is quick enough. Test:
-    /// ShockPropagation.LeavesWhatIsNotDeepWhereItIs.
+    /// islands the contact solver's own correction is quick enough. Test: Settings.AreNoticed.
     std::uint32_t shock_min_levels = 4;
     /// Fraction of the penetration remaining after a step that shock propagation corrects in it. Source: Guendelman et
     /// al. 2003 correct all of it in one sweep, which here throws up what lies on top.
@@ -23,16 +22,16 @@ struct OptimizationSettings {
     /// level. Above it sweeps are cheaper and hold the island as well. Bench: big_pyramid.
     std::uint32_t direct_max_products_high = 300;
     /// Mass of what lies above over the mass of what is below from which on sweeps converge too slowly. Test:
-    /// DirectIslands.AreTallOnesAndHeavyOnesOnLight.
+    /// Settings.AreNoticed.
     double direct_min_mass_ratio = 20;
     /// Cost up to which an island with heavy bodies on light ones is solved directly, in products of 6×6 blocks. Bench:
     /// heavy_on_light.
     std::uint32_t direct_max_products_heavy = 4000;
     /// Mass above a body of a tree over that body's mass from which on the tree is solved directly. Test:
-    /// DirectIslands.AreTallOnesAndHeavyOnesOnLight.
+    /// Settings.AreNoticed.
     double direct_min_load_ratio = 2;
     /// Fraction of the displacement that its sleep threshold allows within which a slow body is in balance. Test:
-    /// SleepOnlyInBalance.ABallRollsDownTheGentlestSlope.
+    /// Settings.AreNoticed.
     double sleep_travel_fraction = 1.0 / 60;
     /// Change of the force of wind, deformables or liquid on a sleeper since it fell asleep, over its weight, that
     /// wakes it. Test: Settings.AreNoticed.
