@@ -25,7 +25,7 @@ struct BallPathSettings {
     /// The same speed on ground that resists rolling, m/s. Test: Settings.AreNoticed.
     double slow_resisted_speed = 0.05;
     /// Depth from which on the ball's energy pays for lifting it out, m; up to that depth the contact solver carries
-    /// it. Test: SleepOnlyInBalance.ABallRollsDownTheGentlestSlope.
+    /// it. Test: Settings.AreNoticed.
     double min_sag = 1e-5;
     /// Depth, in radii, beyond which the contact solver takes the ball out. Open: no test reaches it.
     double max_depth_fraction = 0.1;

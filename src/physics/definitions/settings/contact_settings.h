@@ -31,12 +31,12 @@ struct ContactSettings {
     /// Settings.AreNoticed.
     std::size_t long_list_contacts = 64;
     /// Substeps of a long list, over those of the world. Source: M. Macklin et al., "Small steps in physics
-    /// simulation", 2019. Test: ContactSolver.LongListsAreSolvedInFinerStepsAndShortOnesInMorePasses.
+    /// simulation", 2019. Test: Settings.AreNoticed.
     int long_list_substeps = 2;
     /// Passes over a long list in each phase of a substep. Source: Macklin et al. 2019, one iteration a substep. Test:
     /// Settings.AreNoticed.
     int long_list_passes = 1;
-    /// Passes over a short list. Test: ContactSolver.LongListsAreSolvedInFinerStepsAndShortOnesInMorePasses.
+    /// Passes over a short list. Test: Settings.AreNoticed.
     int short_list_passes = 2;
     /// Passes over a short list of contacts among joints, whose substeps stay those of the world. Test:
     /// Settings.AreNoticed.

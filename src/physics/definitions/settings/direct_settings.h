@@ -22,7 +22,7 @@ struct DirectSettings {
     /// Fraction of a gap or a depth that is closed in the one solve of a step at rest. Test: Settings.AreNoticed.
     double rest_correction_fraction = 0.5;
     /// The same fraction in a substep of moving bodies: lifting is work that a rocking column keeps. Test:
-    /// DirectSolver.ColumnsThatLandBouncingAndRockComeToRest.
+    /// Settings.AreNoticed.
     double moving_correction_fraction = 0.005;
     /// Gap or depth of loaded points below which nothing is closed in motion, m. Test: Settings.AreNoticed.
     double moving_gap_tolerance = 1e-7;
@@ -49,7 +49,7 @@ struct DirectSettings {
     int undamped_iterations = 4;
     /// Maximum further iterations with steps as far as f falls. Test: Settings.AreNoticed.
     int lagged_iterations = 8;
-    /// Maximum iterations for bodies at rest. Test: ContactNewton.RestKeepsMomentumAndLiesInTheCone.
+    /// Maximum iterations for bodies at rest. Test: Settings.AreNoticed.
     int rest_iterations = 16;
     /// Fraction of the slope along a step at which the line search ends. Source: J. Nocedal, S. Wright, "Numerical
     /// optimization", 2006: 0.9 is usual with Newton's method, 0.1 where the search is to be more exact. Test:

@@ -11,7 +11,7 @@ struct FluidObstacleSettings {
     /// Settings.AreNoticed.
     float min_open = 0.02f;
     /// Maximum distance by which a body may be placed elsewhere from outside and still count as moved through the
-    /// fluid, m. Test: FluidObstacles.KnowHowFarTheyAreFromWhereTheyWereLeft.
+    /// fluid, m. Test: Settings.AreNoticed.
     double max_jump = 0.5;
     /// Thickness added to the hulls of a compound, over its longest side; it closes the gaps between them. Source:
     /// those of catalogue models lie up to 0.8 mm (a mug of 12 cm) inside of the surface that they stand for. Test:
@@ -73,7 +73,7 @@ static_assert(setting_count<FluidCollisionSettings> == member_count<FluidCollisi
 /// Drops at walls (src/physics/fluid/particles/drops.cpp).
 struct FluidDropSettings {
     /// Distance from a wall, cells, up to which a drop lies on it. Source: half of a particle's edge, which is half a
-    /// cell. Test: Drops.AreSlowedByAFilmsStressAtAWallAlone.
+    /// cell. Test: Settings.AreNoticed.
     float wall_distance = 0.25f;
     /// Cosine of the receding contact angle less that of the advancing one: what holds a drop's rim. Source: C.
     /// Furmidge, "Studies at phase interfaces", 1962; water on glass, glaze and paint, 30 to 35° and 60 to 75°. Test:

@@ -9,7 +9,7 @@ namespace embody::physics {
 /// solver.cpp, particles/catch_up.cpp).
 struct FluidPressureSettings {
     /// Minimum distance from a liquid cell's centre to the surface in the equation, cells: smaller distances make the
-    /// matrix stiff. Test: PressureSystem.GapIsTheShareOfTheWayToTheSurface.
+    /// matrix stiff. Test: Settings.AreNoticed.
     float min_gap = 0.005f;
     /// Change of a cell's volume that the solve leaves in a part of a step, over the volume. Test: Settings.AreNoticed.
     double tolerance = 1e-4;
@@ -69,10 +69,10 @@ struct FluidViscositySettings {
     /// Minimum distance from a face to a wall in the shear, cells. Test: Settings.AreNoticed.
     double min_wall_distance = 0.1;
     /// Minimum liquid fraction of a control volume: no face has less inertia, and cells in air with less have no
-    /// viscosity. Test: Viscosity.TakesEnergyButNoMomentum.
+    /// viscosity. Test: Settings.AreNoticed.
     float min_fraction = 0.05f;
     /// A cell's Reynolds number at which liquid sticks to walls by half: then the layer at the wall is as thick as a
-    /// cell or so. Test: Viscosity.ThickLayersStickAndThinOnesSlide.
+    /// cell or so. Test: Settings.AreNoticed.
     double stick_reynolds = 4;
     /// Minimum speed in this number, m/s. Test: Settings.AreNoticed.
     double min_stick_speed = 1e-3;
@@ -99,8 +99,7 @@ static_assert(setting_count<FluidViscositySettings> == member_count<FluidViscosi
 /// Surface tension (src/physics/fluid/pressure/surface_tension.cpp).
 struct FluidTensionSettings {
     /// Edge of cells from which on surface tension is left out, in capillary lengths √(σ/(ρ g)). Source: a curvature of
-    /// one cell then has a quarter of gravity's pressure. Test:
-    /// SurfaceTension.MattersOnCellsFinerThanTwiceTheCapillaryLength.
+    /// one cell then has a quarter of gravity's pressure. Test: Settings.AreNoticed.
     double max_cell_size = 2;
     /// Weight of each neighbour where the density is smoothed along an axis. Source: 1 − 4 weights of a wave of two
     /// cells are left, a third; at 1/4 nothing holds such waves, and drops fall to pieces within seconds.
@@ -108,13 +107,11 @@ struct FluidTensionSettings {
     /// Slope of the liquid's volume fraction, in 1/cells, below which there is no surface. Test: Settings.AreNoticed.
     float min_slope = 0.02f;
     /// Maximum curvature, in 1/cells. Source: a ball of two cells radius; the cells do not resolve smaller ones. Test:
-    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    /// Settings.AreNoticed.
     float max_curvature = 1;
-    /// Distance out of the surface, cells, from which on particles are drawn back. Test:
-    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    /// Distance out of the surface, cells, from which on particles are drawn back. Test: Settings.AreNoticed.
     float stray_distance = 0.1f;
-    /// Fraction of the distance beyond it by which a part of a step draws them back. Test:
-    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    /// Fraction of the distance beyond it by which a part of a step draws them back. Test: Settings.AreNoticed.
     float stray_rate = 0.2f;
     /// Slope of the liquid's volume fraction, in 1/cells, below which particles have no surface to be drawn to. Test:
     /// Settings.AreNoticed.

@@ -30,7 +30,7 @@ struct ImpactSolverSettings {
     /// energy. Test: Settings.AreNoticed.
     double expansion_end_fraction = 1e-13;
     /// Cosine of a slide's turn in a first compression above which the slide is taken along its mean direction. Test:
-    /// ImpactGroup.EstimatedSlidesEndAsFollowedOnesAndAddNoEnergy.
+    /// Settings.AreNoticed.
     double straight_cosine = 0.9;
     /// The same cosine in later compressions. Test: Settings.AreNoticed.
     double straight_cosine_later = 0.5;

@@ -16,7 +16,7 @@ struct OptimizationSettings {
     /// al. 2003 correct all of it in one sweep, which here throws up what lies on top.
     double shock_fraction = 0.2;
     /// Number of levels from which on an island counts as high: sweeps bring lower ones to rest. Test:
-    /// DirectIslands.AreTallOnesAndHeavyOnesOnLight.
+    /// Settings.AreNoticed.
     std::uint32_t direct_min_levels = 4;
     /// Cost up to which high islands are solved directly, in products of 6×6 blocks: chains and towers of few bodies a
     /// level. Above it sweeps are cheaper and hold the island as well. Bench: big_pyramid.

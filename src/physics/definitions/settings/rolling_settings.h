@@ -22,9 +22,9 @@ struct RollingBodySettings {
     /// Turn of the axis in a step below which the contact solver loses no energy, rad. Test: Settings.AreNoticed.
     double min_axis_turn = 1e-3;
     /// Turn of the body in a step above which the contact solver's approximation of small turns fails, rad. Test:
-    /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
+    /// Settings.AreNoticed.
     double min_turn = 0.5;
-    /// Maximum turn in a part of the step, rad. Test: Rolling.SpunCoinGoesOnSpinning.
+    /// Maximum turn in a part of the step, rad. Test: Settings.AreNoticed.
     double part_turn = 0.08;
     /// Maximum number of parts of a step; the contact solver takes what needs more. Test:
     /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.

@@ -29,7 +29,7 @@ struct SolidSettings {
     /// Maximum further iterations in a substep for solids whose moves add energy. Test: Settings.AreNoticed.
     int max_corrections = 3;
     /// Maximum energy that a solid may gain in a substep, over its energy, by rounding and by rotations that lag. Test:
-    /// SoftSolid.AnImpactAtAnySpeedMakesNoEnergy.
+    /// Settings.AreNoticed.
     double max_energy_gain = 0.01;
     /// Travel of the fastest node in a substep, over a triangle's mean side, below which no energy is measured. Source:
     /// rotations lag by about that many radians, and the error of a strain's energy is the square of that. Test:
@@ -95,7 +95,7 @@ struct SolidContactSettings {
     /// so much in. Test: SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
     double parting_fraction = 0.125;
     /// Depth of the points that count for that fraction, over a triangle's mean side: contacts never leave a node so
-    /// deep in a step. Test: SoftSolid.ThoseThatBeginWithinEachOtherPartGently.
+    /// deep in a step. Test: Settings.AreNoticed.
     double parting_depth = 0.5;
     /// The same depth while the two are being separated: until no point is so deep. Open: no test reaches it.
     double parted_depth = 0.1;

@@ -13,8 +13,7 @@ struct ThinContactSettings {
     double stiffness_factor = 20;
     /// The same over the inertia of the load on a point. Open: no test reaches it.
     double load_stiffness_factor = 4;
-    /// The same over the inertia of a body in which a node begins, at that place. Test:
-    /// BeginsInside.AHeavyRopeDoesNotKickALightBox.
+    /// The same over the inertia of a body in which a node begins, at that place. Test: Settings.AreNoticed.
     double recovery_stiffness_factor = 2;
     /// Speed at which a node that begins inside something is pushed out, m/s. Test:
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
@@ -48,8 +47,7 @@ struct ThinContactSettings {
     /// Cosine between normals above which the nodes of two edges already keep the edges apart. Test:
     /// Settings.AreNoticed.
     double held_edge_cosine = 0.7;
-    /// Maximum energy that springs may give a body, over that of its move in the solve. Test:
-    /// RopeOnBodies.NoMassAndNoArmMakesEnergy.
+    /// Maximum energy that springs may give a body, over that of its move in the solve. Open: no test reaches it.
     double max_energy_ratio = 4;
     /// Speed up to which springs may push a body without that limit, m/s. Open: no test reaches it.
     double free_push_speed = 0.5;

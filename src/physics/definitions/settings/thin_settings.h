@@ -17,10 +17,10 @@ struct ClothSettings {
     /// Maximum parts of a substep for fast layers. Open: no test reaches it.
     int max_parts = 4;
     /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
-    /// an edge a node comes to a triangle that was no candidate. Test: ClothSheet.LayersDoNotPassThroughEachOther.
+    /// an edge a node comes to a triangle that was no candidate. Test: Settings.AreNoticed.
     double max_layer_travel = 0.5;
     /// Distance within which features of a sheet at rest belong to one layer, over the distance that layers keep.
-    /// Source: above the 2 within which contacts are looked for. Test: ClothLayers.OfAFlatSheetNothingIsNear.
+    /// Source: above the 2 within which contacts are looked for. Test: Settings.AreNoticed.
     double same_layer_reach = 3;
     /// Distance that layers keep where springs have failed, over the distance that springs keep. Test:
     /// Settings.AreNoticed.
@@ -70,7 +70,7 @@ struct RopeSettings {
     /// where the energy falls at all, it has fallen by then. Test: Settings.AreNoticed.
     double min_step_fraction = 1e-3;
     /// As ThinContactSettings::change_tolerance. Source: along a drum errors add up in the exponent. Test:
-    /// RopeLine.GripsADrumAsACapstan.
+    /// Settings.AreNoticed.
     double change_tolerance = 0.005;
     /// 1 + cosine between segments below which the curvature of a clamped rope grows no further. Source: at 0.02 the
     /// rope is folded back by 168 degrees; the curvature of M. Bergou et al., "Discrete elastic rods", 2008, eq. 1,
