@@ -178,13 +178,13 @@ GoldenScene net() {
 GoldenScene falling_chains() {
     GoldenScene scene = on_plane();
     World& world = *scene.world;
-    const Material lively{.friction_static = 0.3, .friction_dynamic = 0.3, .restitution = 0.6};
+    const Material bouncy{.friction_static = 0.3, .friction_dynamic = 0.3, .restitution = 0.6};
     const auto add_chain = [&](Vec3 at, int links, Vec3 velocity, bool hangs) {
         BodyHandle last;
         for (int i = 0; i < links; ++i) {
             const Vec3 place = at + (hangs ? Vec3{0, -0.2 * i, 0} : Vec3{0.2 * i, 0.002 * i, 0});
             const BodyHandle link = add_box(world, hangs ? Vec3{0.03, 0.09, 0.03} : Vec3{0.09, 0.03, 0.03},
-                                            {.position = place, .linear_velocity = velocity, .material = lively});
+                                            {.position = place, .linear_velocity = velocity, .material = bouncy});
             const Vec3 end = hangs ? Vec3{0, 0.1, 0} : Vec3{-0.1, 0, 0};
             if (i > 0) {
                 join(world, last, link, -end, end);
@@ -197,7 +197,7 @@ GoldenScene falling_chains() {
     add_chain({-8, 0.3, 0}, 80, {0, -2, 0}, false);
     for (int i = 0; i < 3; ++i) add_chain({0, 0.5 + 0.4 * i, 3.0 + i}, 5, {0, -4, 0}, false);
     add_chain({0, 3, 8}, 10, {}, true);
-    add_box(world, {0.5, 0.05, 0.05}, {.position = {-2, 2, 8}, .linear_velocity = {12, 0, 0}, .material = lively});
+    add_box(world, {0.5, 0.05, 0.05}, {.position = {-2, 2, 8}, .linear_velocity = {12, 0, 0}, .material = bouncy});
     return scene;
 }
 

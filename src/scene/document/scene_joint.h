@@ -21,8 +21,8 @@ struct SceneJoint {
 
 template <>
 inline constexpr auto fields_of<physics::JointLimit> = std::tuple{
-    always_needed("lower", &physics::JointLimit::lower, "least angle or way, rad or m"),
-    always_needed("upper", &physics::JointLimit::upper, "greatest angle or way, rad or m"),
+    always_needed("lower", &physics::JointLimit::lower, "minimum angle or displacement, rad or m"),
+    always_needed("upper", &physics::JointLimit::upper, "maximum angle or displacement, rad or m"),
 };
 
 template <>
@@ -39,7 +39,7 @@ inline constexpr auto fields_of<physics::HingeJoint> = std::tuple{
 
 template <>
 inline constexpr auto fields_of<physics::SliderJoint> = std::tuple{
-    saved_when_set("limit", &physics::SliderJoint::limit, "of the way"),
+    saved_when_set("limit", &physics::SliderJoint::limit, "of the displacement"),
     saved_when_set("motor", &physics::SliderJoint::motor, "moves it"),
 };
 

@@ -141,9 +141,9 @@ export interface Entity {
 }
 
 export interface JointLimit {
-  /** least angle or way, rad or m */
+  /** minimum angle or displacement, rad or m */
   lower: number;
-  /** greatest angle or way, rad or m */
+  /** maximum angle or displacement, rad or m */
   upper: number;
 }
 
@@ -185,7 +185,7 @@ export type Joint = {
     }
   | {
       type: "slider";
-      /** of the way */
+      /** of the displacement */
       limit?: JointLimit;
       /** moves it */
       motor?: JointMotor;

@@ -244,13 +244,13 @@ TEST_F(FluidBodies, TwoPushABodyBySumOfTheirForces) {
 // Without gravity nothing sinks, and liquid at rest sleeps where it floats.
 TEST_F(FluidBodies, WithoutGravityALumpAtRestSleeps) {
     use({.gravity = {0, 0, 0}});
-    const FluidHandle lump = add_pool();
-    run_until_asleep(lump);
-    EXPECT_EQ(fastest(lump), 0);
+    const FluidHandle pool = add_pool();
+    run_until_asleep(pool);
+    EXPECT_EQ(fastest(pool), 0);
     use({});
     run(1);
     // What sleeps does not notice another gravity before it is woken.
-    ASSERT_TRUE(world_->wake(lump));
+    ASSERT_TRUE(world_->wake(pool));
     run(30);
     EXPECT_LT(world_->conserved().linear_momentum.y, 0);
 }

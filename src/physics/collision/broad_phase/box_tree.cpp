@@ -117,7 +117,7 @@ void BoxTree::insert(std::uint32_t value, const FloatBox& box) {
     if (value >= slots_.size()) slots_.resize(value + 1, none);
     EMBODY_ASSERT(slots_[value] == none);
     // Boxes that are removed and inserted again and again, with no query between, leave gaps behind.
-    constexpr std::uint32_t max_gaps = 4, fewest_slots = 64;
+    constexpr std::uint32_t max_gaps = 4, fewest_slots = 64;  // slots for each box, and beside
     if (leaf_count() * lanes > max_gaps * used_ + fewest_slots) sort();
 
     // The last leaf may have room; a sorted one stays as it is.

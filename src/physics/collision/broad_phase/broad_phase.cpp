@@ -14,9 +14,9 @@ namespace embody::physics::collision {
 namespace {
 
 // A box wider than this would make every box above it useless; such bodies (planes) are kept in a list.
-constexpr double widest_in_tree = 1e7;
+constexpr double widest_in_tree = 1e7;  // m
 // The enlargement: a tenth of the size, but no more than 5 cm, so that small things do not pair with far ones.
-constexpr double max_margin = 0.05;
+constexpr double max_margin = 0.05;  // m
 // Worlds with fewer changed bodies look for pairs on one thread.
 constexpr std::uint32_t min_parallel_count = 500;
 // Room for this many pairs is always kept; beyond, for as many as a body may have partners.

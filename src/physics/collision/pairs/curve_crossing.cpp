@@ -13,7 +13,7 @@ namespace {
 // Directions within this sine of a side's or an edge's normal plane are taken to mean the side or the edge.
 constexpr double beside = 0.05;
 // Lines at a smaller angle than this count as parallel.
-constexpr double min_sine = 0.03;
+constexpr double min_sine = 0.03;  // of the angle between lines: 1.7 degrees
 
 /// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the search begins.
 struct Curve {

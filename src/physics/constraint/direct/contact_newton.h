@@ -50,8 +50,8 @@ public:
 
     /// Before find_shifts(): bodies may slide while they are moved. Else what sticks stays where it is.
     void drop_friction(std::span<DirectPatch> patches);
-    /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by at most `most` m; after
-    /// find_velocities() or find_rest(), with the last factors.
+    /// Small motions that close `fraction` of the gaps and overlaps of all loaded points, each by at most `most` m;
+    /// after find_velocities() or find_rest(), with the last factors.
     void find_shifts(std::span<const DirectPatch> patches, double fraction, double most, std::span<Vec6> shifts);
 
 private:

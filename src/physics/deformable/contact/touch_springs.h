@@ -147,7 +147,7 @@ public:
     /// Continues with the last forces of the contacts of another deformable of as many nodes.
     void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
     /// Pushes the bodies, and stores forces and anchors. Changes moves of nodes that came in where no spring acted.
-    /// `shares`: as of fractions_of(), or none.
+    /// `fractions`: as of fractions_of(), or none.
     void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
                 std::span<TouchedBody> bodies, std::span<const double> fractions = {});
 

@@ -37,7 +37,7 @@ public:
     /// linearize().
     void predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
     /// Moves the nodes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or
-    /// one a node. Pushes the bodies; `shares` as of TouchSprings::finish().
+    /// one a node. Pushes the bodies; `fractions` as of TouchSprings::finish().
     void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions);
     [[nodiscard]] TouchSprings& touch() { return springs_; }

@@ -35,7 +35,7 @@ public:
     /// Signed distance; the reach where it is larger.
     [[nodiscard]] ObstacleDistance nearest(Vec3 p) const;
     /// Fractions of the eight octants of the axis-aligned cube around p, of that edge, inside the obstacle: 0 … 1,
-    /// added to `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
+    /// added to `fractions`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
     void add_octants(Vec3 p, double edge, float* fractions) const;
     /// Whether the obstacle ends within `depth` behind the surface nearest to p, which is inside.
     [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
