@@ -63,7 +63,8 @@ inline constexpr auto fields_of<SceneJoint> = std::tuple{
     always_saved("name", &SceneJoint::name, "what people call it"),
     saved_when_set("entity_a", &SceneJoint::entity_a, "index, or a name that only one entity has; without, the world",
                    index_range),
-    always_needed("entity_b", &SceneJoint::entity_b, "the entity that the joint holds, likewise", index_range),
+    always_needed("entity_b", &SceneJoint::entity_b,
+                  "the entity that the joint holds: its index, or a name that only one entity has", index_range),
     saved_beside(&SceneJoint::definition),
 };
 

@@ -161,7 +161,7 @@ export type Joint = {
   name?: string;
   /** index, or a name that only one entity has; without, the world (1 … 2147483647) */
   entity_a?: number;
-  /** the entity that the joint holds, likewise (1 … 2147483647) */
+  /** the entity that the joint holds: its index, or a name that only one entity has (1 … 2147483647) */
   entity_b: number;
   /** the joint's frame in `entity_a`, or in the world */
   frame_a?: Pose;
