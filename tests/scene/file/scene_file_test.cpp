@@ -143,7 +143,7 @@ TEST(SceneFileRefuses, FieldsOfPinsJointsAndActionsByTheirLists) {
         {"/joints", R"({"type": "hinge", "entity_b": 1, "motor": {"max_force": -1}})",
          "joints[0].motor.max_force: must be 0.0 or more, got -1"},
         {"/joints", R"({"type": "hinge", "entity_b": 1, "limit": {"lower": 1, "uper": 0}})",
-         "joints[0].limit.upper: is missing: greatest angle or way"},
+         "joints[0].limit.upper: is missing: maximum angle or displacement"},
         {"/actions", R"({"trigger": {"type": "time", "time": -1}, "effect": {"type": "pause"}})",
          "actions[0].trigger.time: must be 0.0 s or more, got -1"},
         {"/actions", R"({"trigger": {"type": "signal", "kee": "k"}, "effect": {"type": "pause"}})",
