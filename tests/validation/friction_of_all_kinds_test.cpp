@@ -132,7 +132,7 @@ TEST_P(FrictionOfAllKinds, LiesAndSlidesByThePairsCoefficients) {
         const auto expected = [&](double tangent) {
             return gravity * (tangent - pair.sliding) / std::sqrt(1 + tangent * tangent);
         };
-        for (const double tangent : {1.3 * pair.at_rest, (pair.at_rest + pair.sliding) / 2}) {
+        for (const double tangent : {1.05 * pair.at_rest, 1.3 * pair.at_rest, (pair.at_rest + pair.sliding) / 2}) {
             tilt(*world, tangent);
             run(*world, 0.1);
             EXPECT_NEAR(acceleration(*world, center, 0.3), expected(tangent), 0.05 * gravity * pair.sliding) << tangent;

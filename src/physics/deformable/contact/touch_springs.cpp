@@ -26,7 +26,8 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h, cons
 
 // Friction: k (hold + slip) up to its limit. Beyond it, the secant through that limit at the expected slip, which can
 // only stop sliding; where the slip is so long that friction cannot end it in this substep, the limit itself. The
-// expected slip of a sticking point is that of the point alone with the limit instead of the larger force that it had.
+// expected slip of a sticking point, and of every one where the solves are few (predicts_slip), is that of the point
+// alone with the limit instead of the larger force that it had.
 // A point that stuck in the last substep sticks up to the static limit. Returns the change of the force, N.
 double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predicted) {
     constexpr double stuck_fraction = 0.99;  // of k times the stretch: below it the force was that of a secant
@@ -37,7 +38,8 @@ double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predict
     const double size = length(stretch);
     const double excess = length(force) - limit;
     const bool has_stuck = length(force) > stuck_fraction * spring.stiffness * size;
-    const double expected = !is_predicted && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
+    const double expected =
+        !is_predicted && (has_stuck || spring.predicts_slip) && excess > 0 ? size + excess / spring.inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
     if (!sticks) limit = spring.friction.sliding * load;
     const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
@@ -199,6 +201,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
         is_free |= nodes.inverse_mass[node] > 0;
     }
     spring.body = plane.body;
+    spring.predicts_slip = predicts_slip;
     spring.normal = place.rotation * plane.normal;
     spring.arm = place.rotation * plane.anchor;
     const Vec3 offset = point - place.center - spring.arm;

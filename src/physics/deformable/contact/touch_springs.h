@@ -71,6 +71,7 @@ struct TouchSpring {
     Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
     PairFriction friction;         ///< of the two surfaces
     bool sticks = true;            ///< holds by static friction until its limit is left
+    bool predicts_slip = false;    ///< as of TouchSprings
     double gap = 0;                ///< at the end of the substep if the point stays, m
     Vec3 carried;                  ///< displacement of the body's surface in the substep on its path, m
     double stiffness = 0;          ///< maximum of both directions, N/m
@@ -157,7 +158,10 @@ public:
     Material material;                                          ///< of the deformable's surface
     double tolerance = ThinContactSettings{}.change_tolerance;  ///< relative change of the forces that needs no solve,
                                                                 ///< set before begin()
-    std::vector<Attachment> attachments;                        ///< that still hold
+    /// Expects of a sliding point the further slip that the excess of its friction over the limit would make: for few
+    /// solves, where the secant alone comes too slowly to its slip.
+    bool predicts_slip = false;
+    std::vector<Attachment> attachments;           ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
 private:
