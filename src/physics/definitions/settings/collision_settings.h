@@ -11,8 +11,9 @@ namespace embody::physics {
 /// fast bodies are stopped (src/physics/stages/touch, stages/rigid/continuous.cpp). The tolerances of src/geometry
 /// stand where they are used.
 struct CollisionSettings {
-    /// Gap up to which surfaces are looked for besides what they can close in the step, m. Source: Bullet's contact
-    /// breaking threshold is 0.02, Box2D's speculative distance 4 slops of 0.005. Test: Settings.AreNoticed.
+    /// Gap up to which surfaces are looked for besides what they can close in the step, m. Source: less than the 0.02
+    /// of Box2D 3 (B2_SPECULATIVE_DISTANCE) and Jolt (mSpeculativeContactDistance), which add no travel. Test:
+    /// Settings.AreNoticed.
     double contact_margin = 0.005;
     /// The same gap for balls, in radii: their one point of contact does not jump, and with an absolute gap most
     /// contacts of grains of millimetres would be with grains that they do not touch. Test: Settings.AreNoticed.

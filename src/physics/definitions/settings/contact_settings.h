@@ -9,8 +9,9 @@ namespace embody::physics {
 
 /// Contact regions and the sweeps over them (src/physics/constraint/contact, sweeps).
 struct ContactSettings {
-    /// Distance up to which a new point takes over the impulses of an old one of another feature, m. Source: Bullet's
-    /// contact breaking threshold is 0.02. Test: Settings.AreNoticed.
+    /// Distance up to which a new point takes over the impulses of an old one of another feature, m. Source: Jolt takes
+    /// 0.01 (mContactPointPreserveLambdaMaxDistSq), Bullet 0.02 of the smaller body's reach
+    /// (gContactBreakingThreshold). Test: Settings.AreNoticed.
     double match_reach = 0.02;
     /// The same distance for points of one feature, over match_reach: the feature identifies the point wherever it
     /// slides. Test: Settings.AreNoticed.
@@ -18,8 +19,9 @@ struct ContactSettings {
     /// Depth from which on a step reports that bodies overlap deeply, m; it steers nothing else. Source: what
     /// max_correction_speed takes out in a step of 1/60 s.
     float deep_penetration = 0.05F;
-    /// Depth beyond the sag of a loaded soft contact that is not corrected, m. Source: Box2D's linear slop of 0.005,
-    /// which keeps contacts there; here contacts are kept whatever their depth. Test: Settings.AreNoticed.
+    /// Depth beyond the sag of a loaded soft contact that is not corrected, m. Source: less than the 0.005 of Box2D 2.4
+    /// (b2_linearSlop) and the 0.02 of Jolt (mPenetrationSlop); here contacts are kept whatever their depth. Test:
+    /// Settings.AreNoticed.
     double penetration_slop = 1e-4;
     /// Fraction of a penetration that is corrected a second, 1/s. At a larger rate a chair's foot that was found too
     /// deep kicks the chair up. Test: Settings.AreNoticed.
@@ -30,8 +32,8 @@ struct ContactSettings {
     /// Number of contacts up to which a list is short: a short list takes the world's substeps and more passes. Test:
     /// Settings.AreNoticed.
     std::size_t long_list_contacts = 64;
-    /// Substeps of a long list, over those of the world. Source: M. Macklin et al., "Small steps in physics
-    /// simulation", 2019. Test: Settings.AreNoticed.
+    /// Substeps of a long list, over those of the world. Source: measured, docs/physics/contact-solver.md; the method
+    /// is of M. Macklin et al., "Small steps in physics simulation", 2019. Test: Settings.AreNoticed.
     int long_list_substeps = 2;
     /// Passes over a long list in each phase of a substep. Source: Macklin et al. 2019, one iteration a substep. Test:
     /// Settings.AreNoticed.
@@ -42,7 +44,8 @@ struct ContactSettings {
     /// Settings.AreNoticed.
     int jointed_passes = 8;
     /// Frequency of the soft contacts of a long list over that of its substeps: the maximum at which one pass
-    /// converges. Source: Box2D 3 bounds it by a quarter. Test: Settings.AreNoticed.
+    /// converges. Source: Box2D 3.1.1 bounds it by 1/8 between moving bodies and by 1/4 on static ones. Test:
+    /// Settings.AreNoticed.
     double long_list_stiffness = 0.15;
     /// The same for a short list, where two passes converge. Test: Settings.AreNoticed.
     double short_list_stiffness = 0.3;

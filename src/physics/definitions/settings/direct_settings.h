@@ -39,8 +39,8 @@ struct DirectSettings {
     /// to the inverse of this ratio, and doubles hold it up to ratios of masses of 1e6. Test: Settings.AreNoticed.
     double stiffness_per_mass = 1e5;
     /// Fraction of k that is used where the sweeps' loads are the guess for bodies at rest: with all of k, a point that
-    /// is left out lets its body fall so far that many other points stop it. Source: measured,
-    /// docs/physics/direct-solver.md. Test: Settings.AreNoticed.
+    /// is left out lets its body fall so far that many other points stop it. Source: docs/physics/direct-solver.md, "At
+    /// rest". Test: Settings.AreNoticed.
     double rest_stiffness_fraction = 1e-2;
     /// The same fraction where the guess is the loads of the step before, which found the bodies at rest. Test:
     /// Settings.AreNoticed.
@@ -52,8 +52,8 @@ struct DirectSettings {
     /// Maximum iterations for bodies at rest. Test: Settings.AreNoticed.
     int rest_iterations = 16;
     /// Fraction of the slope along a step at which the line search ends. Source: J. Nocedal, S. Wright, "Numerical
-    /// optimization", 2006: 0.9 is usual with Newton's method, 0.1 where the search is to be more exact. Test:
-    /// Settings.AreNoticed.
+    /// optimization", 2006, 3.1: 0.9 is usual with Newton's method; this is the 0.1 of nonlinear conjugate gradients.
+    /// Test: Settings.AreNoticed.
     double line_search_tolerance = 0.1;
     /// Maximum points of a line search. Test: Settings.AreNoticed.
     int line_search_iterations = 12;

@@ -11,8 +11,8 @@ namespace embody::physics {
 /// How many parts a step of a fluid is solved in (src/physics/fluid/solver.cpp).
 struct FluidPartSettings {
     /// Maximum travel of particles in a part of a step, and of obstacles where the liquid catches up with them, cells.
-    /// Source: N. Foster, R. Fedkiw 2001 allow 5, for paths without obstacles; here an obstacle's distances are known
-    /// for two cells around it. Test: Settings.AreNoticed.
+    /// Source: below the two cells around an obstacle within which distances to it are known. N. Foster, R. Fedkiw,
+    /// "Practical animation of liquids", 2001, allow 5. Test: Settings.AreNoticed.
     double max_displacement = 1.5;
     /// Maximum number of parts of a step; faster liquid is slowed and the report says so. Test: Settings.AreNoticed.
     int max_parts = 16;

@@ -75,8 +75,9 @@ struct FluidDropSettings {
     /// Distance from a wall, cells, up to which a drop lies on it. Source: half of a particle's edge, which is half a
     /// cell. Test: Settings.AreNoticed.
     float wall_distance = 0.25f;
-    /// Cosine of the receding contact angle less that of the advancing one: what holds a drop's rim. Source: C.
-    /// Furmidge, "Studies at phase interfaces", 1962; water on glass, glaze and paint, 30 to 35° and 60 to 75°. Test:
+    /// Cosine of the receding contact angle less that of the advancing one: what holds a drop's rim. Source of the law:
+    /// C. Furmidge, "Studies at phase interfaces. I", 1962. The value is assumed for water on glass, glaze and paint:
+    /// angles of 30 to 35° and 60 to 75° make 0.3 to 0.6. Test:
     /// Drops.StayWhereTheirRimOrTheirYieldStressHoldsThem,
     /// FluidSpill.DropsClingToAnInclineUntilTheirWeightIsMoreThanTheirRimHolds.
     double angle_hysteresis = 0.4;

@@ -19,9 +19,9 @@ struct FluidPressureSettings {
     /// Maximum iterations of a solve; the report says where they did not suffice. Test: Settings.AreNoticed.
     int max_iterations = 300;
     /// Fraction of what the incomplete Cholesky factor leaves out that is put on the diagonal, 0 … 1. Source: R.
-    /// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.8 (τ).
+    /// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.3, "Modified Incomplete Cholesky" (τ).
     double cholesky_modification = 0.97;
-    /// Fraction of the diagonal below which the factor takes the diagonal itself. Source: R. Bridson 2015, 5.8 (σ).
+    /// Fraction of the diagonal below which the factor takes the diagonal itself. Source: R. Bridson 2015, 5.3 (σ).
     double cholesky_safety = 0.25;
 };
 

@@ -29,8 +29,8 @@ struct JointSettings {
     /// Error of an iteration over the last one's above which the method is taken as diverging, after
     /// nonmonotone_iterations. Test: Settings.AreNoticed.
     double max_error_ratio = 0.5;
-    /// Iterations of Newton's method in which the error may rise. Source: L. Grippo et al., "A nonmonotone line search
-    /// technique for Newton's method", 1986. Test: Settings.AreNoticed.
+    /// Iterations of Newton's method in which the error may rise. Source of the method: L. Grippo, F. Lampariello, S.
+    /// Lucidi, "A nonmonotone line search technique for Newton's method", 1986. Test: Settings.AreNoticed.
     int nonmonotone_iterations = 4;
     /// Maximum iterations of Newton's method. Test: Settings.AreNoticed.
     int max_iterations = 20;

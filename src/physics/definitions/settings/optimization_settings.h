@@ -12,8 +12,9 @@ struct OptimizationSettings {
     /// Number of levels of an island from which on shock propagation corrects the remaining penetration; for lower
     /// islands the contact solver's own correction is quick enough. Test: Settings.AreNoticed.
     std::uint32_t shock_min_levels = 4;
-    /// Fraction of the penetration remaining after a step that shock propagation corrects in it. Source: Guendelman et
-    /// al. 2003 correct all of it in one sweep, which here throws up what lies on top.
+    /// Fraction of the penetration remaining after a step that shock propagation corrects in it; the method is of E.
+    /// Guendelman et al., "Nonconvex rigid bodies with stacking", 2003. Source: all of it in one step throws up what
+    /// lies on top.
     double shock_fraction = 0.2;
     /// Number of levels from which on an island counts as high: sweeps bring lower ones to rest. Test:
     /// Settings.AreNoticed.

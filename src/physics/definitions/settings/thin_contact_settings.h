@@ -7,8 +7,8 @@ namespace embody::physics {
 
 /// Contacts, attachments and ties of sheets and ropes as springs with memory (src/physics/deformable/contact).
 struct ThinContactSettings {
-    /// Stiffness of a contact over that of the node's neighbours, or over the inertia of the heavier point. Source: the
-    /// method of multipliers, one iteration a substep, is stable from 1 on and converges faster the stiffer it is.
+    /// Stiffness of a contact over that of the node's neighbours, or over the inertia of the heavier point. Source:
+    /// docs/physics/cloth.md: the method of multipliers is stable from 1 on, and converges faster the stiffer it is.
     /// Test: Settings.AreNoticed.
     double stiffness_factor = 20;
     /// The same over the inertia of the load on a point. Open: no test reaches it.
@@ -19,8 +19,8 @@ struct ThinContactSettings {
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
     double recovery_speed = 0.2;
     /// Fraction of an overlap of sheets and ropes that is corrected in a substep. Source: R. Bridson, R. Fedkiw, J.
-    /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct a tenth a
-    /// step. Test: Settings.AreNoticed.
+    /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct at most a
+    /// tenth a step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
     /// Overlap of a sheet's own layers, over the sum of both radii, from which on their contacts remember no force:
     /// layers that something holds in each other would push ever harder. Test: Settings.AreNoticed.

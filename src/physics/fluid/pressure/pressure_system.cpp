@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The conjugate gradient's preconditioner is the modified incomplete Cholesky factor of level zero (R. Bridson, "Fluid
-// Simulation for Computer Graphics", 2nd edition 2015, 5.8). Workers sweep strips of tiles side by side, each a layer
+// Simulation for Computer Graphics", 2nd edition 2015, 5.3). Workers sweep strips of tiles side by side, each a layer
 // behind the one before: what is computed is the same as row by row. Sums are taken by blocks, whose number depends on
 // the rows alone.
 #include "physics/fluid/pressure/pressure_system.h"
