@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: MIT
 """Prints which lines and branches of src/ ran, by folder, from the counters of a build with EMBODY_COVERAGE.
 
-Usage: report_coverage.py BUILD [FOLDER…]     FOLDER: of src/, for example physics or physics/fluid; default: all of it
+Usage: report_coverage.py [--missing] BUILD [FOLDER…]     FOLDER: of src/, for example physics or physics/fluid; default: all of it
 Counters of all runs since they were last removed (find BUILD -name '*.gcda' -delete) add up. A line or branch that several translation units
-have, as of a header, counts once, and ran if it did in any of them. Branches are counted without those that exceptions take. Sources that
-were compiled, but of which nothing ran, count with nothing run.
+have, as of a header, counts once, and ran if it did in any of them. Sources that were compiled, but of which nothing ran, count with nothing
+run. Branches are counted without those that an exception takes and those of lines without code, as a closing brace: there the compiler
+destroys what an exception leaves behind (gcovr's --exclude-throw-branches and --exclude-unreachable-branches).
+--missing: also lists the lines with branches that did not run.
 """
 import argparse
 import collections
@@ -13,6 +15,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -31,8 +34,14 @@ def read_notes(notes: pathlib.Path) -> list:
     return files
 
 
+def has_code(text: str) -> bool:
+    """Whether a line has more than braces, parentheses and semicolons."""
+    return re.sub(r"//.*", "", text).strip(" (){};") != ""
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--missing", action="store_true")
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("folders", nargs="*", default=[""])
     options = parser.parse_args()
@@ -44,7 +53,7 @@ def main() -> int:
         return 1
 
     # By file: whether each line ran; by line and number of the branch: whether it did.
-    lines, branches = collections.defaultdict(dict), collections.defaultdict(dict)
+    lines, branches, texts = collections.defaultdict(dict), collections.defaultdict(dict), {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for files in pool.map(read_notes, notes):
             for file in files:
@@ -52,9 +61,13 @@ def main() -> int:
                 if not path.is_relative_to(source):
                     continue
                 name = path.relative_to(source).as_posix()
+                if name not in texts:
+                    texts[name] = path.read_text(encoding="utf-8").split("\n")
                 for line in file["lines"]:
                     number = line["line_number"]
                     lines[name][number] = lines[name].get(number, False) or line["count"] > 0
+                    if not has_code(texts[name][number - 1]):
+                        continue
                     taken = [branch for branch in line["branches"] if not branch["throw"]]
                     for i, branch in enumerate(taken):
                         key = (number, i)
@@ -64,15 +77,22 @@ def main() -> int:
         ran = sum(sum(lines[name].values()) for name in names)
         count = sum(len(lines[name]) for name in names)
         taken = sum(sum(branches[name].values()) for name in names)
-        ways = sum(len(branches[name]) for name in names)
+        there = sum(len(branches[name]) for name in names)
         print(f"{title:36} {ran:7} of {count:7} lines {100 * ran / max(count, 1):5.1f} %   "
-              f"{taken:7} of {ways:7} branches {100 * taken / max(ways, 1):5.1f} %")
+              f"{taken:7} of {there:7} branches {100 * taken / max(there, 1):5.1f} %")
+
+    def print_missing(name: str) -> None:
+        missing = collections.Counter(number for (number, _), ran in branches[name].items() if not ran)
+        for number, count in sorted(missing.items()):
+            print(f"{name}:{number}: {count} did not run: {texts[name][number - 1].strip()}")
 
     for wanted in options.folders:
         names = [name for name in lines if name.startswith(wanted)]
         by_folder = collections.defaultdict(list)
         for name in names:
             by_folder[name.rsplit("/", 1)[0]].append(name)
+            if options.missing:
+                print_missing(name)
         for folder in sorted(by_folder):
             row(folder, by_folder[folder])
         row(f"src/{wanted}", names)
