@@ -5,9 +5,10 @@
 Usage: check_settings.py [--list] [ROOT]   (default: the folder above this file)
 - Each setting of src/physics/definitions/settings has a comment with "Source: ...", "Bench: scene",
   "Test: Suite.Name, Suite.Name", of which each exists, or "Open: ..." where nothing shows yet what it is good for. WorldSettings are what users set; they are not looked at.
+  Each is reached from SolverSettings.
 - Each other named constant that is a number, in src/physics, has a comment of what it bounds: on its line, on the line
   where its declaration ends, or on the line above it or above the constants before it. Sentinels and tags need none.
---list prints the settings with where they come from.
+--list prints the path of each setting and where it comes from.
 """
 import argparse
 import pathlib
@@ -15,6 +16,8 @@ import re
 import sys
 
 MEMBER = re.compile(r"^    (?:bool|float|double|int|std::u?int\d+_t|std::size_t) (\w+) = [^;]*;", re.M)
+GROUP = re.compile(r"^    (\w+Settings) (\w+);", re.M)
+STRUCT = re.compile(r"^struct (\w+) \{", re.M)
 TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", re.M)
 NAMED = re.compile(r"\b(\w+\.\w+)\b")
 SELF_EXPLAINING = re.compile(r"constexpr \S+ (?:pi|none|never|lanes|width|no_\w+|\w+_tag) =|= 0x[0-9A-F]+|= [a-zA-Z_:<>() ]+;")
@@ -32,7 +35,10 @@ def comment_above(lines: list, at: int) -> str:
 
 def check_settings(path: pathlib.Path, tests: set, wrong: list, settings: list):
     lines = path.read_text().splitlines()
+    struct = ""
     for at, line in enumerate(lines):
+        begins = STRUCT.match(line)
+        struct = begins[1] if begins else struct
         member = MEMBER.match(line)
         if not member:
             continue
@@ -42,11 +48,29 @@ def check_settings(path: pathlib.Path, tests: set, wrong: list, settings: list):
         if not origin:
             wrong.append(f"{where} has no source: write Source:, Test: or Bench: into the comment above it")
             continue
-        settings.append((path.stem, member[1], comment[origin.start():]))
+        settings.append((struct, member[1], comment[origin.start():]))
         for named in re.findall(r"Tests?: ((?:\w+\.\w+(?:, )?)+)", comment):
             for test in NAMED.findall(named):
                 if test not in tests:
                     wrong.append(f"{where} names the test {test}, which does not exist")
+
+
+def paths_of_structs(folder: pathlib.Path) -> dict:
+    """Where each struct of settings is within SolverSettings: `constraint.joint.`."""
+    members = {}
+    for path in folder.glob("*_settings.h"):
+        struct = ""
+        for line in path.read_text().splitlines():
+            begins, group = STRUCT.match(line), GROUP.match(line)
+            struct = begins[1] if begins else struct
+            if group:
+                members.setdefault(struct, []).append(group.groups())
+    paths, todo = {}, [("SolverSettings", "")]
+    while todo:
+        struct, path = todo.pop()
+        paths[struct] = path
+        todo += [(inner, f"{path}{name}.") for inner, name in members.get(struct, [])]
+    return paths
 
 
 def check_constants(path: pathlib.Path, name: str, wrong: list):
@@ -83,9 +107,11 @@ def main() -> int:
         if path.suffix in (".h", ".cpp") and path not in of_settings:
             check_constants(path, path.relative_to(options.root).as_posix(), wrong)
 
+    paths = paths_of_structs(physics / "definitions" / "settings")
+    wrong += [f"{struct}: {name} is not reached from SolverSettings" for struct, name, _ in settings if struct not in paths]
     if options.list:
-        for module, name, origin in settings:
-            print(f"{module:24} {name:36} {origin}")
+        for struct, name, origin in settings:
+            print(f"{paths.get(struct, struct + ' ') + name:52} {origin}")
     for line in wrong:
         print(line)
     if not settings or not tests:

@@ -20,14 +20,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def named_tests() -> dict:
-    """The tests that the comment of each setting names, by the struct's file and the setting's name."""
+    """The tests that the comment of each setting names, by the setting's path."""
     listed = subprocess.run([sys.executable, ROOT / "tools" / "check_settings.py", "--list"], capture_output=True, text=True)
     found = {}
     for line in listed.stdout.splitlines():
-        parts = re.match(r"(\w+_settings)\s+(\w+)\s+\w+: (.*)", line)
+        parts = re.match(r"([a-z_0-9.]+)\s+\w+: (.*)", line)
         if parts:
-            tests = re.findall(r"\b([A-Z]\w+\.\w+)\b", parts[3])
-            found.setdefault(parts[2], set()).update(test for test in tests if test != "Settings.AreNoticed")
+            tests = re.findall(r"\b([A-Z]\w+\.\w+)\b", parts[2])
+            found[parts[1]] = {test for test in tests if test != "Settings.AreNoticed"}
     return found
 
 
@@ -67,9 +67,9 @@ def main() -> int:
 
     listing = subprocess.run([options.build / "tests" / "test_validation", "--gtest_filter=SettingLists.ArePrinted"],
                              capture_output=True, text=True, check=True)
-    by_name, todo = named_tests(), []
+    by_path, todo = named_tests(), []
     for path, *numbers in re.findall(r"^setting (\S+) (\S+) (\S+) (\S+) ([01])$", listing.stdout, re.M):
-        tests = by_name.get(path.rsplit(".", 1)[-1], set())
+        tests = by_path.get(path, set())
         wanted = options.tests or ":".join(f"{test}:*/{test}/*" for test in sorted(tests))
         if wanted and (not options.prefix or any(path.startswith(prefix) for prefix in options.prefix)):
             value, low, high = map(float, numbers[:3])
