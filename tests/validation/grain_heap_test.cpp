@@ -3,6 +3,9 @@
 // few thousand: single heaps of the same kind differ by a degree).
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "make_world.h"
 #include "physics/definitions/grain_material.h"
 #include "scenes/structures/grain_heap.h"
 
@@ -42,9 +45,18 @@ TEST(GrainMaterial, GrowsRougherWithTheAngleAndInProportionToTheSize) {
 }
 
 TEST(GrainSteps, AreFinerForSmallerGrainsAndNeverCoarserThanAskedFor) {
-    const WorldSettings settings;
+    const WorldSettings settings = make_world()->settings();
     EXPECT_EQ(substeps_for_grains(0.1, settings), settings.substeps);
     EXPECT_GT(substeps_for_grains(0.003, settings), substeps_for_grains(0.01, settings));
+    // Heaps come out steeper from 0.05 of the time on in which a grain falls its own diameter (docs/physics/grains.md).
+    for (const double diameter : {0.003, 0.006, 0.01}) {
+        const auto part = [&](int substeps) {  // twice as many in large islands
+            return settings.time_step / (2 * substeps) / std::sqrt(diameter / length(settings.gravity));
+        };
+        const int substeps = substeps_for_grains(diameter, settings);
+        EXPECT_LT(part(substeps), 0.05) << diameter;
+        EXPECT_GT(part(substeps - 2), 0.05) << diameter;
+    }
     WorldSettings fine;
     fine.substeps = 64;
     EXPECT_EQ(substeps_for_grains(0.003, fine), 64);
