@@ -10,7 +10,7 @@
 namespace embody::attributes {
 namespace {
 
-// Stems of words that say that the substance itself is meant, in bulk or as it flows.
+// Stems of words that say that the substance itself is meant, in bulk or flowing.
 constexpr std::array<std::string_view, 22> bulk_words{
     "blob", "drop", "droplet", "fluid",  "heap",  "layer",   "liquid", "loose",  "melted", "molten", "mound",
     "pile", "pool", "poured",  "puddle", "spill", "spilled", "spilt",  "splash", "stain",  "stream", "surface"};

@@ -31,8 +31,8 @@ bool applies_to(std::string_view attribute, PhysicalKind kind) {
 
 namespace {
 
-// Of a round rod of one material GJ / EI = 1 / (1 + ν): where nobody knows the twist rigidity, or only the other was
-// set by a person.
+// A round rod of one material has GJ / EI = 1 / (1 + ν). Used where the twist rigidity is unknown, or where a person
+// set only the bend rigidity.
 void put_twist_rigidity(AttributeSet& set) {
     constexpr double poisson_ratio = 0.3;
     const AttributeEntry* held = set.find("twist_rigidity");
@@ -93,7 +93,7 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
     const AttributeLevel level = AttributeLevel::model;
     put_number(set, "bulk_density", mass / form.box_volume, "mass / volume of the bounding box", level);
 
-    // A hollow thing's walls: material volume over the area of its surface.
+    // Wall thickness of a hollow thing: material volume over the area of its surface.
     if (facts.surface_area > 0 && fill < 0.9) {
         put_number(set, "wall_thickness", fill * volume / facts.surface_area, "material volume / surface area", level);
     }
@@ -121,7 +121,7 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
 
 namespace {
 
-// Three digits are enough of what is counted by the thousand.
+// Three digits are enough for a count in the thousands.
 std::string counted(double count) {
     const double step = std::pow(10, std::max(0.0, std::floor(std::log10(count)) - 2));
     return std::to_string(std::llround(count / step) * std::llround(step));
@@ -131,7 +131,7 @@ void put_simulated_grains(AttributeSet& set, double volume, const Form& form) {
     const double grain = set.number("grain_diameter", 0.002), budget = set.number("grain_budget", 2000);
     const double least = std::cbrt(6 * loose_packing * volume / (std::numbers::pi * budget));
     const AttributeDescription& range = *describe("simulated_diameter");
-    // At least one layer of them must lie inside.
+    // At least one layer of grains must fit inside.
     const double largest = std::max(*range.low, 0.6 * std::min({form.size.x, form.size.y, form.size.z}));
     const double diameter = std::min(std::max({grain, least, *range.low}), largest);
     const double stands_for = std::pow(diameter / grain, 3);
@@ -144,8 +144,8 @@ void put_simulated_grains(AttributeSet& set, double volume, const Form& form) {
 
 // A cell has eight particles.
 void put_fluid_cells(AttributeSet& set, double volume) {
-    // What runs through many cells in a step is solved in as many parts, so that small cells are dear beyond their
-    // number: below this size they are as small as a thousand particles ask for, no smaller.
+    // A step in which the liquid crosses several cells is cut into as many parts, so that small cells cost more than
+    // their number says. Below this size the cells are only as small as a thousand particles need.
     constexpr double usual_least = 0.006, fewest = 1000;
     const double budget = set.number("particle_budget", 20000);
     const auto cell_for = [volume](double particles) { return std::cbrt(8 * volume / particles); };
@@ -177,11 +177,11 @@ void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& for
 
 namespace {
 
-// By its area: a box as thin as cloth, but solid, would be far too heavy.
+// Mass by area: a box as thin as cloth, but solid, would be far too heavy.
 void put_mass_of_sheet(AttributeSet& set, const GeometryFacts& facts) {
     const Vec3 size = facts.size;
     const double thickness = std::min({size.x, size.y, size.z});
-    // Of triangles, which have no volume, the largest face of their box; a plane has no area at all.
+    // Triangles have no volume: their area is the largest face of their box. A plane has no area at all.
     const bool is_solid = facts.volume > 0 && thickness > 0;
     const double face = std::max({size.x * size.y, size.y * size.z, size.z * size.x});
     const double area = is_solid ? facts.volume / thickness : face;
@@ -199,7 +199,7 @@ void put_mass_of_sheet(AttributeSet& set, const GeometryFacts& facts) {
                AttributeLevel::model);
 }
 
-// As its category says of a metre; without one as solid as anything.
+// Mass: linear density of the category times length. Without a density of the category the mass stays that of a solid.
 void put_mass_of_line(AttributeSet& set, const GeometryFacts& facts) {
     const AttributeEntry* held = set.find("linear_density");
     const double along = std::max({facts.size.x, facts.size.y, facts.size.z});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array level_names{"default", "kind", "category", "subcategory", "model", "measured", "manual"};
 
-// Place of a name in the registry; names that are not in it come last.
+// Index of a name in the registry; names that are not in it come last.
 std::size_t rank_of(std::string_view name) {
     const AttributeDescription* description = describe(name);
     if (description == nullptr) return std::numeric_limits<std::size_t>::max();
@@ -38,14 +38,14 @@ const AttributeEntry* AttributeSet::find(std::string_view name) const {
 }
 
 bool AttributeSet::put(AttributeEntry entry) {
-    // An entry of the same name gives way to an equal or higher level only.
+    // An entry of the same name is replaced only by an equal or higher level.
     for (AttributeEntry& held : entries_) {
         if (held.name != entry.name) continue;
         if (held.level > entry.level) return false;
         held = std::move(entry);
         return true;
     }
-    // A new one goes to its place in the registry's order.
+    // A new entry goes to its place in the registry's order.
     const std::size_t rank = rank_of(entry.name);
     const auto place = std::find_if(entries_.begin(), entries_.end(),
                                     [&](const AttributeEntry& held) { return rank_of(held.name) > rank; });

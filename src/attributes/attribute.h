@@ -28,7 +28,7 @@ struct AttributeEntry {
     std::string name;  ///< a name of the registry
     AttributeValue value;
     std::optional<double> low, high;  ///< 80 % interval of a number, where one is known
-    std::string source;  ///< why we think so, in words a user reads; names literature where it is from there
+    std::string source;               ///< why we think so, in words a user reads; names the literature that it is from
     AttributeLevel level = AttributeLevel::standard;
 };
 

@@ -9,16 +9,16 @@
 
 namespace embody::attributes {
 
-/// One thing that does not hold together.
+/// One contradiction in a set of attributes.
 struct Issue {
     std::string attribute;
     std::string why;
 };
 
-/// Rules that hold between attributes: every value in its range and interval, nothing missing, mass = density × fill ×
-/// volume within 1 %, bulk density not above density, sliding friction not above static, centre of mass in the box,
-/// moments of inertia of a body of that size. Empty for every set that resolve() makes; a person can contradict
-/// himself.
+/// Checks rules that hold between attributes: every value in its range and interval, nothing missing, mass = density ×
+/// fill × volume within 1 %, bulk density not above density, sliding friction not above static, centre of mass in the
+/// box, moments of inertia of a body of that size. The result is empty for every set that resolve() makes; a person can
+/// enter contradictions.
 std::vector<Issue> check(const AttributeSet& set, const ModelFacts& facts);
 
 }  // namespace embody::attributes

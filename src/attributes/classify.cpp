@@ -18,8 +18,8 @@ namespace {
 
 using wordnet::NounTable;
 
-// How far each source is believed: of the taxonomy's own phrases, and of nouns that only WordNet knows. How they were
-// found is in docs/decisions/0009-wordnet.md.
+// Confidence in each source: in the taxonomy's own phrases, and in nouns that only WordNet knows.
+// docs/decisions/0009-wordnet.md says how the numbers were found.
 struct Trust {
     const char* where;
     double phrase;
@@ -32,21 +32,21 @@ constexpr Trust folder_trust{"folder", 0.5, 0.4};
 constexpr Trust category_trust{"catalogue category", 0.3, 0.15};
 constexpr Trust part_trust{"part material", 0.25, 0.15};
 constexpr double usual_of_catalogue = 0.35;  // "Lights" → lamp
-constexpr double a_step = 0.93;              // each hypernym
-constexpr double own_word = 3;               // the taxonomy's reading of a word before WordNet's others
-constexpr double overruled = 0.5;            // what stands in the name, but is not what it is about
+constexpr double a_step = 0.93;              // factor for each hypernym
+constexpr double own_word = 3;               // weight of the taxonomy's reading of a word against WordNet's others
+constexpr double overruled = 0.5;            // factor for a phrase of the name that is not the thing itself
 constexpr double trust_in_compound = 0.9;    // "deskchair"
 constexpr double trust_in_ending = 0.65;     // "Kaffeetisch"
 constexpr double nothing_known = 0.05;
-constexpr std::size_t long_name = 6;     // words: a sales text, whose last noun says less than a tag
-constexpr double trust_in_long = 0.55;   // of what a short name is trusted
+constexpr std::size_t long_name = 6;     // words; a longer name is a sales text, whose last noun says less than a tag
+constexpr double trust_in_long = 0.55;   // factor on the confidence of a short name
 constexpr double close_runner_up = 0.6;  // of the winner's confidence
 
 AttributeLevel level_of(const CategoryData& category) {
     return category.parent.empty() ? AttributeLevel::category : AttributeLevel::subcategory;
 }
 
-// "name says "lamp" (it also says "table")".
+// Source of an answer: name says "lamp" (it also says "table").
 std::string because(std::string_view where, const PhraseMatch& match) {
     std::string text = std::string(where) + " says \"" + match.phrase + "\"";
     for (std::size_t i = 0; i < match.others.size() && i < 3; ++i) {
@@ -79,7 +79,7 @@ struct ReadNoun {
     std::vector<NounReading> readings;
 };
 
-// A noun that shares little with the tags may be a brand or an ornament.
+// A noun that is hardly related to the tags may be a brand or an ornament.
 double trust_beside(const Surroundings& surroundings, const NounReading& reading) {
     const auto kin = surroundings.kinship(reading.meaning);
     return kin ? std::clamp(0.75 + 0.6 * (*kin - 0.15), 0.75, 1.05) : 1;
@@ -88,8 +88,8 @@ double trust_beside(const Surroundings& surroundings, const NounReading& reading
 Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const ReadNoun& read, std::size_t choice) {
     const NounReading& reading = read.readings[choice];
     const CategoryData& category = data.categories[reading.entry];
-    // Half of the doubt between readings counts: those that lose are often near the one that wins. And a word that
-    // mostly means no thing at all is seldom what a thing is called by.
+    // Only half of the doubt between readings counts, since the losing readings are often close in meaning to the
+    // winner. A word that seldom means a physical thing is seldom the name of one.
     const double confidence = trust.noun * std::pow(a_step, static_cast<double>(reading.steps)) *
                               (0.5 + 0.5 * reading.share) * (0.6 + 0.4 * std::min(1.0, 2 * read.noun.physical));
     return {.category = &category,
@@ -110,7 +110,8 @@ std::string text_of(const std::vector<Token>& tokens, const NounOccurrence& noun
     return text;
 }
 
-// As for phrases: the first part of the name, in it the last noun, of these the longest; plain nouns first of all.
+// The same order as for phrases: plain nouns first, then the first part of the name, in it the last noun, of these the
+// longest.
 bool says_more(const NounOccurrence& a, const NounOccurrence& b) {
     if (a.is_plain != b.is_plain) return a.is_plain;
     if (a.segment != b.segment) return a.segment < b.segment;
@@ -118,7 +119,7 @@ bool says_more(const NounOccurrence& a, const NounOccurrence& b) {
     return a.end - a.first > b.end - b.first;
 }
 
-// The noun of the text that says most and leads to a category.
+// The first noun of the text, in the order of says_more(), that leads to a category.
 std::optional<ReadNoun> read_noun(const Taxonomy::Data& data, const std::vector<Token>& tokens,
                                   const Surroundings& surroundings, bool is_name) {
     std::vector<NounOccurrence> nouns = nouns_of(data, tokens);
@@ -137,8 +138,8 @@ bool is_kind_of_any(const NounTable& nouns, wordnet::SynsetIndex meaning, std::o
         nouns.senses(*noun), [&](const wordnet::NounSense& sense) { return is_kind_of(nouns, meaning, sense.synset); });
 }
 
-// Whether a noun that only WordNet knows, and not the taxonomy's phrase, is what the name is about: "guinea pig" is no
-// pig, "wine decanter" no wine; but a "coffee mug" is a mug, and a "sofa classic" a sofa.
+// Whether the name is about a noun that only WordNet knows, and not about the taxonomy's phrase: a "guinea pig" is no
+// pig, a "wine decanter" no wine; but a "coffee mug" is a mug, and a "sofa classic" a sofa.
 bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens, const PhraseMatch& phrase,
                     const ReadNoun& read) {
     const NounOccurrence& noun = read.noun;
@@ -148,11 +149,11 @@ bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens
     // A "waffle maker" is no person.
     if (data.nouns->topic(reading.meaning) == wordnet::Topic::person) return false;
 
-    // What the phrase names is a kind of what the noun names: the phrase says more.
+    // The phrase means a kind of what the noun means: the phrase says more.
     const auto meant = data.nouns->find_synset(category.synset);
     if (meant && is_kind_of(*data.nouns, *meant, reading.meaning)) return false;
 
-    // Several words that WordNet has as one, with the phrase among them.
+    // Several words with one entry in WordNet, the phrase among them.
     const bool covers = noun.first <= phrase.first && noun.end >= phrase.end;
     if (covers && noun.end - noun.first > phrase.end - phrase.first) {
         if (noun.physical < 0.4) return false;
@@ -161,12 +162,12 @@ bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens
         return !is_kind_of_any(*data.nouns, reading.meaning, data.nouns->find_inflected(tokens[noun.end - 1].text));
     }
     if (covers || !noun.is_plain || noun.physical < 0.6 || reading.share < 0.4) return false;
-    // The last noun of the same part, or one of a part before it.
+    // Either the last noun of the same part, or a noun of an earlier part.
     return noun.segment == phrase.segment ? noun.first >= phrase.end : noun.segment < phrase.segment;
 }
 
-// What else the taxonomy's word may mean: something else altogether, not a neighbour of what the taxonomy means. The
-// readings with how likely each is beside the taxonomy's own, the likeliest first.
+// Other meanings of the taxonomy's word that are not related to the taxonomy's meaning: readings with their odds
+// against the taxonomy's own reading, the likeliest first.
 struct OtherMeanings {
     ReadNoun read;
     std::vector<double> odds;  ///< one for each of read.readings
@@ -191,7 +192,8 @@ OtherMeanings other_meanings(const Taxonomy::Data& data, const std::vector<Token
     return others;
 }
 
-// Meanings that a person should hear of, less believed than the taxonomy's; the first one's source names them.
+// Adds meanings that a person should know of, with less confidence than the taxonomy's; the source of the first
+// candidate names them.
 void tell_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others, std::vector<Candidate>& found) {
     constexpr double worth_telling = 0.05;  // odds
     for (std::size_t i = 0; i < others.odds.size() && i < 3; ++i) {
@@ -205,7 +207,7 @@ void tell_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others
     }
 }
 
-// A "toy lawn mower" is a toy, unless the taxonomy has a word for just that.
+// A "toy lawn mower" is a toy, unless the taxonomy has a phrase for exactly that.
 std::optional<Candidate> ask_for_toy(const Taxonomy::Data& data, const std::vector<Token>& tokens,
                                      const PhraseMatch& phrase) {
     const CategoryData* toy = data.category("toy");
@@ -226,7 +228,8 @@ std::optional<Candidate> ask_for_toy(const Taxonomy::Data& data, const std::vect
                      .level = level_of(*toy)};
 }
 
-// What the name says: the taxonomy's phrase, or the noun that it does not have; the other one follows, less believed.
+// Candidates from the name: the taxonomy's phrase, or a noun that the taxonomy does not have; the other one follows
+// with less confidence.
 std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view name, const Surroundings& surroundings) {
     const std::vector<Token> tokens = tokens_of(name);
     const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, name);
@@ -251,7 +254,8 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
         yield_to(*read, ", which another noun of the name overrules");
         return found;
     }
-    // A "bat" beside the tag "animal", a "crane" as large as a house: what else is known may say that it is the other.
+    // A "bat" beside the tag "animal", a "crane" as large as a house: tags and size may show that the other meaning is
+    // right.
     const OtherMeanings others = other_meanings(data, tokens, *phrase, surroundings);
     if (surroundings.tell() && !others.odds.empty() && others.odds.front() > 1) {
         yield_to(others.read, ", which what else is known speaks against");
@@ -261,7 +265,7 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     return found;
 }
 
-// Words that make of a thing something else of its form.
+// Words that turn the name of a thing into the name of its imitation.
 constexpr std::array<std::string_view, 6> imitations{"toy", "artificial", "fake", "dummy", "miniature", "imitation"};
 
 bool is_imitation(const std::string& phrase) {
@@ -270,8 +274,8 @@ bool is_imitation(const std::string& phrase) {
     });
 }
 
-// A tag that has the name's own phrase with more before it ("toy cup" beside the name "cup"), or that says that the
-// thing only looks like what it is named after ("toy fruit" beside "banana"), says more exactly what the name means.
+// A tag that has the name's own phrase with more words before it ("toy cup" beside the name "cup"), or that says that
+// the thing is an imitation ("toy fruit" beside "banana"), says more exactly what the name means.
 void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found) {
     if (found.empty() || found.front().phrase.empty()) return;
     const Candidate named = found.front();
@@ -288,8 +292,8 @@ void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, st
     }
 }
 
-// A stated size that no such thing has speaks against what the words say: a man of 7 cm, a swimming pool in a box. Up
-// to a factor 2 outside says nothing. Of the candidates from `first` on.
+// A stated size that such things never have speaks against the words: a man of 7 cm, a swimming pool in a box. Up to a
+// factor 2 outside the usual size changes nothing. Only candidates from `first` on are changed.
 void doubt_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found,
                          std::size_t first) {
     constexpr double tolerated = 0.7, strength = 1.5, least = 0.05;
@@ -324,7 +328,7 @@ void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view t
     }
 }
 
-// Names of the parts' materials tell what they are made of, and now and then what they are parts of: "lamp_shade".
+// Names of the parts' materials say what the parts are made of, and sometimes what they are parts of: "lamp_shade".
 void ask_parts(const Taxonomy::Data& data, const ModelFacts& facts, const Surroundings& surroundings,
                std::vector<Candidate>& found) {
     constexpr std::size_t parts_asked = 6;
@@ -348,9 +352,9 @@ void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vec
                      .level = level_of(category)});
 }
 
-// "deskchair" → "desk chair": an unknown word as two known ones, the second as long as possible; or, where only its end
-// need be known, as whatever and one of our own words, as German builds them: "Kaffeetisch" → "kaffee tisch". Empty
-// where no word can be split.
+// "deskchair" → "desk chair": splits an unknown word into two known ones, the second as long as possible. With
+// `only_end` only the second must be known, and be one of our own words, as in German compounds: "Kaffeetisch" →
+// "kaffee tisch". Empty where no word can be split.
 std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<Token>& tokens, bool only_end) {
     const auto is_ours = [&](const std::string& word) { return data.category_phrases.contains(singular_of(word)); };
     const auto is_known = [&](const std::string& word) {
@@ -358,7 +362,7 @@ std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<T
     };
     const auto can_split = [&](const std::string& begin, const std::string& end) {
         if (only_end) return end.size() >= 4 && is_ours(end);
-        // Three letters are a word by chance, unless it is one of ours: "katana" is no "kat ana".
+        // Three letters form a word by chance, so that they must be one of ours: "katana" is no "kat ana".
         return is_known(begin) && is_known(end) && (end.size() >= 4 || is_ours(end));
     };
     std::string text;
@@ -376,8 +380,8 @@ std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<T
     return any ? text : std::string();
 }
 
-// Without what modelling programs append: "Car_root_node", "chair_mesh", "untitled". They say what the file holds, not
-// what that shows. Unchanged where there is none of it.
+// The name without the words that modelling programs append: "Car_root_node", "chair_mesh", "untitled". These words
+// describe the file, not the thing. Unchanged where there are none of them.
 std::string without_words_of_tools(const std::string& name) {
     constexpr std::array<std::string_view, 7> tools{"mesh", "scene", "temp", "geo", "untitled", "node", "poly"};
     constexpr std::array<std::string_view, 3> before_them{"root", "low", "high"};  // "root node", "low poly"
@@ -397,7 +401,8 @@ std::string without_words_of_tools(const std::string& name) {
     return text;
 }
 
-// The name, else the name with its compounds taken apart, believed less the more that is a guess.
+// Candidates from the name, else from the name with its compounds split, with less confidence since the split is a
+// guess.
 std::vector<Candidate> ask_name_and_compounds(const Taxonomy::Data& data, const std::string& name,
                                               const Surroundings& surroundings) {
     std::vector<Candidate> found = ask_name(data, name, surroundings);
@@ -412,7 +417,7 @@ std::vector<Candidate> ask_name_and_compounds(const Taxonomy::Data& data, const 
     return found;
 }
 
-// Whether one answer says more exactly what the other says: a subcategory of it, or a kind of what it means.
+// Whether answer `a` is more exact than `b`: a subcategory of it, or a kind of what it means.
 bool is_more_exact(const Taxonomy::Data& data, const Candidate& a, const Candidate& b) {
     if (a.category == b.category) return false;
     if (!a.category->parent.empty() && a.category->parent == b.category->name) return true;
@@ -421,7 +426,7 @@ bool is_more_exact(const Taxonomy::Data& data, const Candidate& a, const Candida
     return exact && general && is_kind_of(*data.nouns, *exact, *general);
 }
 
-// Sources that agree, one saying more exactly what the other says: the more exact answer is believed at least as much.
+// Where two sources agree and one is more exact, the more exact answer gets at least the confidence of the other.
 void support_each_other(const Taxonomy::Data& data, std::vector<Candidate>& found) {
     constexpr double a_little_more = 1.02;
     for (Candidate& exact : found) {
@@ -435,7 +440,8 @@ void support_each_other(const Taxonomy::Data& data, std::vector<Candidate>& foun
     }
 }
 
-// The likeliest first, each category once; the source of the first names the next where that is close.
+// The likeliest candidate first, each category once; the source of the first names the second where its confidence is
+// close.
 Classification decide(std::vector<Candidate> found) {
     std::ranges::stable_sort(found, std::greater{}, &Candidate::confidence);
     Classification result;
@@ -458,8 +464,8 @@ bool is_said_to_be_made_of(const std::vector<Token>& tokens, std::size_t materia
 
 bool material_by_words(const Taxonomy::Data& data, const std::string& where, std::string_view text,
                        MaterialChoice& result) {
-    // A "door with panes" is not made of glass: only the first part of a name says what it is made of, or what follows
-    // a word that says so: "Tisch aus Holz".
+    // A "door with panes" is not made of glass: only the first part of a name says the material, or the word after one
+    // such as "aus": "Tisch aus Holz".
     const auto match = match_phrase(data.material_phrases, data.longest_phrase, text);
     if (!match || (match->segment > 0 && !is_said_to_be_made_of(tokens_of(text), match->first))) return false;
     result = {&data.materials[match->entry], where + " says \"" + match->phrase + "\"", AttributeLevel::model};
@@ -477,7 +483,8 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const std::size_t from_name = found.size();
     doubt_unusual_sizes(data, facts, found, 0);
 
-    // Who described a collection knew what its names mean; the name may still say it more exactly.
+    // A collection's description was written by somebody who knew what its names mean; the name may still be more
+    // exact.
     if (!facts.stated_thing.empty()) {
         ask_text(data, collection_trust, facts.stated_thing, surroundings, found);
         support_each_other(data, found);
@@ -506,7 +513,7 @@ MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& fac
     const auto& said_by = what.category->said_by;
     if (const auto file = said_by.find("material"); file != said_by.end())
         result.source += ", says your " + file->second;
-    // The words that name the thing say nothing of its material: a "paper towel holder" is not made of paper.
+    // Words that name the thing do not say its material: a "paper towel holder" is not made of paper.
     if (material_by_words(data, "name", without_phrase(facts.name, what.phrase), result)) return result;
     for (const std::string& part : facts.material_names) {
         if (material_by_words(data, "part material \"" + part.substr(0, 60) + "\"", part, result)) return result;

@@ -13,15 +13,16 @@ namespace embody::attributes {
 /// One answer to what a model is.
 struct Candidate {
     const CategoryData* category = nullptr;  ///< never null
-    double confidence = 0;  ///< 0 to 1: how likely the category, or what is above it, is what the thing is
-    std::string where;      ///< what was asked: "collection", "name", "tag", "folder", "catalogue category", "part
-                            ///< material"; empty: nothing
-    std::string source;     ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
-    std::string phrase;     ///< the words that decided; empty where none did
-    std::string synset;     ///< what these words mean in WordNet; empty where unknown
+    double confidence = 0;  ///< 0 to 1: probability that the thing is of the category or of one above it
+    std::string where;   ///< the source: "collection", "name", "tag", "folder", "catalogue category", "part material";
+                         ///< empty: none
+    std::string source;  ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
+    std::string phrase;  ///< the words that decided; empty where none did
+    std::string synset;  ///< what these words mean in WordNet; empty where unknown
     std::size_t steps = 0;  ///< hypernyms from that meaning up to the category
-    std::string reckoning;  ///< how the confidence comes about
-    AttributeLevel level = AttributeLevel::standard;  ///< subcategory, category, or standard where nothing tells
+    std::string reckoning;  ///< how the confidence was computed
+    AttributeLevel level =
+        AttributeLevel::standard;  ///< subcategory, category, or standard where no source has an answer
 };
 
 /// What a model is, and why we think so.
@@ -29,13 +30,14 @@ struct Classification : Candidate {
     std::vector<Candidate> others;  ///< what else it could be, the likeliest first
 };
 
-/// From what a collection's description says that it is, the name where that says it more exactly; without such, from
-/// the name, else the tags, the folder, the catalogue's category, the names of the parts' materials; of each the
-/// taxonomy's own phrases first, then the nearest category above a noun that WordNet knows. The source names a
-/// runner-up that is close. A model of a substance is often something else (of beer, its bottle): see as_model.h.
+/// The answer comes from a collection's description of the thing, or from the name where the name is more exact.
+/// Without a description it comes from the name, else the tags, the folder, the catalogue's category, the names of the
+/// parts' materials; in each the taxonomy's own phrases first, then the nearest category above a noun that WordNet
+/// knows. The source names a runner-up that is close. A model of a substance is often something else (of beer, its
+/// bottle): see as_model.h.
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts);
 
-/// By how much hypernyms widen what is known of a category: standard deviation of ln(mass) that comes on top.
+/// Standard deviation of ln(mass) that this number of hypernyms adds to the category's own.
 double spread_of_steps(std::size_t steps);
 
 struct MaterialChoice {
@@ -44,7 +46,7 @@ struct MaterialChoice {
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// From the name ("wooden desk"), else the parts' material names, else the category.
+/// The material that the name says ("wooden desk"), else the parts' material names, else the category.
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what);
 
 /// The material that the name of a part's material says; null where it says none.

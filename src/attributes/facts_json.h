@@ -8,10 +8,11 @@
 
 namespace embody::attributes {
 
-/// The form in which the database keeps them; their numbers are finite, the tensor stands by columns, to the last bit.
+/// The form in which the database keeps the facts. Their numbers are finite; the tensor is stored by columns and keeps
+/// every bit.
 nlohmann::json to_json(const ModelFacts& facts);
-/// What is left out keeps its default, and what nobody knows is passed over: other versions wrote it. A field of the
-/// wrong type is refused by its path, such as "facts.geometry.size".
+/// A missing field keeps its default. Unknown fields are ignored, since other versions wrote them. A field of the wrong
+/// type is refused by its path, such as "facts.geometry.size".
 Result<ModelFacts> facts_from_json(const nlohmann::json& document);
 
 }  // namespace embody::attributes

@@ -252,7 +252,7 @@ bool FieldReader::rotation(const char* name, Quat& value) {
     if (!field) return false;
     const std::string where = path(name);
 
-    // The friendly form: an axis and an angle.
+    // The form for people: an axis and an angle.
     if (field->is_object()) {
         Vec3 axis;
         double degrees = 0;
@@ -262,8 +262,8 @@ bool FieldReader::rotation(const char* name, Quat& value) {
         if (const json* given = reader.need("degrees", "the angle of the rotation"))
             read_number(*given, reader.path("degrees"), degrees, error_);
         if (!reader.finish()) return false;
-        // Only the direction of the axis counts, and of the angle what two whole turns leave: their squares and
-        // products must not overflow.
+        // Only the direction of the axis and the angle modulo two turns count. Both are reduced first, since squares
+        // and products could overflow.
         const double largest = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
         if (largest == 0) {
             fail(reader.path("axis"), "must not be zero");
@@ -273,7 +273,7 @@ bool FieldReader::rotation(const char* name, Quat& value) {
         return true;
     }
 
-    // The quaternion itself, kept to the last bit.
+    // The quaternion itself; every bit is kept.
     if (!field->is_array() || field->size() != 4) {
         fail(where, "must be four numbers [x, y, z, w] or {\"axis\": [x, y, z], \"degrees\": angle}");
         return false;
@@ -286,7 +286,7 @@ bool FieldReader::rotation(const char* name, Quat& value) {
         fail(where, "must not be zero: no rotation is [0, 0, 0, 1]");
         return false;
     }
-    // What is not of unit length was written by hand.
+    // A quaternion that is not of unit length was written by hand.
     value = std::fabs(dot(read, read) - 1) < 1e-9 ? read : normalized(read);
     return true;
 }

@@ -18,15 +18,15 @@
 namespace embody::attributes {
 
 /// Reads the fields of one JSON object strictly: the one reader of all JSON that people or programs write. Each
-/// function takes the field out of the object if it is there and leaves the value as it is if not; finish() refuses
-/// what nobody asked for, with the nearest name that was asked for. The first error of all readers that share one
-/// `error` is kept; after it nothing is read any more. Errors name the path of the field and what is wrong with it.
+/// function takes the field out of the object if it is there and leaves the value unchanged if not; finish() refuses
+/// fields that no call read, and names the nearest name that was read. The first error of all readers with the same
+/// `error` is kept; after it nothing more is read. Errors name the path of the field and what is wrong with it.
 class FieldReader {
 public:
     /// `json` and `error` outlive the reader. `where` is the object's path, e.g. "entities[3].pose" or
     /// "furniture.json: categories[3]"; empty for the top.
     FieldReader(const nlohmann::json& json, std::string where, std::optional<Error>& error);
-    /// With an error of its own.
+    /// A reader with an error of its own.
     FieldReader(const nlohmann::json& json, std::string where);
     FieldReader(const FieldReader&) = delete;
     FieldReader& operator=(const FieldReader&) = delete;
@@ -35,7 +35,7 @@ public:
     const nlohmann::json* take(const char* name);
     /// Like take(), but missing is an error that says what the field holds.
     const nlohmann::json* need(const char* name, const char* what);
-    /// Each of these must be there.
+    /// Refuses the object if one of these fields is missing.
     void require(std::initializer_list<const char*> names);
 
     bool number(const char* name, double& value, NumberRange range = any_number);
@@ -65,15 +65,15 @@ public:
         return choice(name, value, std::span(words.begin(), words.size()));
     }
 
-    /// Refuses fields that were not asked for. Returns whether all is well so far.
+    /// Refuses fields that no call read. Returns whether there is no error so far.
     bool finish();
 
     [[nodiscard]] bool ok() const { return !error_.has_value(); }
     /// Keeps the first error.
     void fail(const std::string& where, std::string why, std::string remedy = {});
-    /// The same of a field of this object.
+    /// Refuses a field of this object with the error of fail().
     void refuse(std::string_view field, std::string why, std::string remedy = {});
-    /// The path of a field of this object; of no name: of the object.
+    /// The path of a field of this object; of the object itself for an empty name.
     [[nodiscard]] std::string path(std::string_view field) const;
     [[nodiscard]] std::optional<Error>& error() { return error_; }
 
@@ -86,7 +86,7 @@ private:
     bool is_object_;
 };
 
-/// Elements of arrays and single values, for what is not a field. Each fails with `where` and returns false.
+/// Readers of elements of arrays and of single values. Each calls fail() with `where` and returns false.
 bool read_number(const nlohmann::json& json, const std::string& where, double& value, std::optional<Error>& error,
                  NumberRange range = any_number);
 bool read_vector(const nlohmann::json& json, const std::string& where, Vec3& value, std::optional<Error>& error);

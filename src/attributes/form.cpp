@@ -18,7 +18,7 @@ Mat3 box_inertia(Vec3 size, double mass) {
     return box.inertia * (mass / box.volume);
 }
 
-// Volume from the most exact thing known, never more than the box holds.
+// Volume from the most exact source, never more than that of the box.
 void choose_volume(const GeometryFacts& facts, Form& form) {
     const double most = form.box_volume * (1 + 1e-3);
     const double least = std::max(form.box_volume * 1e-6, least_extent * least_extent * least_extent);
@@ -95,14 +95,14 @@ CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form
 ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static) {
     if (is_static) return {"trimesh", "static things collide with their own triangles", AttributeLevel::kind};
 
-    // Whatever fits the hull would close the hollow.
+    // A primitive that fits the hull would fill the hollow.
     if (facts.hull_concavity > negligible_concavity(facts.size)) {
         return {"decomposition",
                 "the convex hull would fill hollows up to " + short_number(facts.hull_concavity * 1000) + " mm deep",
                 AttributeLevel::measured};
     }
 
-    // A primitive may stand off the hull by 2 % of the diagonal: less than one sees.
+    // A primitive may be up to 2 % of the diagonal away from the hull: less than one sees.
     const bool is_primitive = validate("collision_shape", facts.fitted_shape).ok() &&
                               facts.fitted_shape != "convex_hull" && facts.fitted_shape != "trimesh" &&
                               facts.fitted_shape != "decomposition";

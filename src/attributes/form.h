@@ -9,21 +9,21 @@
 
 namespace embody::attributes {
 
-/// What of a model's form the mass depends on, made safe: every number finite and positive, also of an empty or flat
-/// model.
+/// The part of a model's form that its mass depends on, made safe: every number is finite and positive, also for an
+/// empty or flat model.
 struct Form {
     Vec3 size;                  ///< extents of the box, each at least `least_extent`, m
     bool size_known = false;    ///< from the model, not the category
     double box_volume = 0;      ///< m³
     double face_area = 0;       ///< of the box's largest face, m²
     double volume = 0;          ///< inside the surface, the hull or the box, m³, at most the box's
-    std::string volume_source;  ///< which of them, and how it was computed
+    std::string volume_source;  ///< whether surface, hull or box, and how it was computed
     AttributeLevel volume_level = AttributeLevel::standard;
     bool volume_is_own = false;  ///< of the surface itself, so that its moments can be used
 };
 
-/// A box this thin in all directions still holds the least mass at the greatest density; longer than this is taken for
-/// broken.
+/// A box this thin in all directions still holds the smallest mass at the largest density. A model longer than
+/// `greatest_extent` counts as broken.
 inline constexpr double least_extent = 1e-3;
 inline constexpr double greatest_extent = 1e4;
 
@@ -37,8 +37,8 @@ struct CenterAndInertia {
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// Of its parts where they are known (`of_parts`, see material_parts.h) and could be a real body of this size; else of
-/// the surface's own volume scaled to the mass, else of the homogeneous box.
+/// Moments of the parts where they are known (`of_parts`, see material_parts.h) and could be those of a real body of
+/// this size; else of the surface's own volume scaled to the mass; else of the homogeneous box.
 CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass,
                                     const std::optional<CenterAndInertia>& of_parts);
 
@@ -48,8 +48,8 @@ struct ShapeChoice {
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// Triangles for static things, a decomposition where hollows are deep, else the fitted primitive where it lies close
-/// to the hull, else the hull.
+/// Triangles for static things, a decomposition where hollows are deep, else the fitted primitive where its error is
+/// small, else the hull.
 ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static);
 
 /// A number for people: three digits.

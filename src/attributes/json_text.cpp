@@ -32,7 +32,7 @@ public:
     void enter(bool is_list) { levels_.push_back({is_list, 0, {}}); }
     void leave() { levels_.pop_back(); }
     void name(std::string_view field) { levels_.back().field = field; }
-    /// A value of a list or an object is over.
+    /// A value of a list or an object has ended.
     void next() {
         if (!levels_.empty()) ++levels_.back().at;
     }
@@ -57,7 +57,7 @@ private:
     std::vector<Level> levels_;
 };
 
-/// Walks a text that cannot be read, to tell where and why.
+/// Walks a text that cannot be parsed, to find the place and the reason.
 class FaultFinder final : public nlohmann::json_sax<json> {
 public:
     std::size_t byte = 0;
@@ -83,7 +83,7 @@ public:
         byte = position;
         token = last;
         is_too_large = dynamic_cast<const json::out_of_range*>(&fault) != nullptr;
-        // After the parser's own number and place of the error.
+        // Message without the parser's own error number and position.
         what = fault.what();
         if (const std::size_t at = what.find("syntax error "); at != std::string::npos) what = what.substr(at + 13);
         field = path_.text();
@@ -107,7 +107,7 @@ private:
     FieldPath path_;
 };
 
-/// Finds a field that an object names twice, of which the parser would keep one in silence. The text is valid JSON.
+/// Finds a field that an object names twice; the parser would silently keep one of them. The text is valid JSON.
 class RepetitionFinder {
 public:
     explicit RepetitionFinder(std::string_view text) : text_(text) {}
@@ -179,7 +179,7 @@ private:
     std::size_t at_ = 0;
     bool is_name_next_ = false;
     FieldPath path_;
-    std::vector<Name> names_;          ///< of the objects that are open, one after the other
+    std::vector<Name> names_;          ///< of the open objects, one after the other
     std::vector<std::size_t> starts_;  ///< in names_, of every open object and list
     std::deque<std::string> unescaped_;
 };
@@ -216,7 +216,7 @@ bool nests_too_deep(std::string_view text) {
 }
 
 Result<json> parse_json(const std::string& text, const std::string& where) {
-    // The parser takes a NUL for the end of the text and does not look at what follows.
+    // The parser takes a NUL for the end of the text and ignores the rest.
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
         return Error{where + ", " + line_and_column(text, nul + 1), "is not JSON: has a byte 0",
                      "mend the text there, or save it again with the program that made it"};

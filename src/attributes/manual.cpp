@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a person sets stays; what follows from it is computed again.
+// Values that a person set stay; values that follow from them are computed again.
 #include <algorithm>
 
 #include "attributes/assemble.h"
@@ -19,7 +19,7 @@ void put_derived(AttributeSet& set, const char* name, AttributeValue value, std:
     replace(set, {name, std::move(value), {}, {}, std::move(source), AttributeLevel::model});
 }
 
-// A given mass is explained by the density, or by the fill where the density is given too or would be impossible.
+// A given mass sets the density; it sets the fill where the density is given too or would be impossible.
 void explain_mass(AttributeSet& set) {
     const double mass = set.number("mass", 1);
     const double volume = set.number("volume", 1);
@@ -35,7 +35,7 @@ void explain_mass(AttributeSet& set) {
         put_derived(set, "fill_fraction", needed_fill, "manual mass / (density x volume)");
         return;
     }
-    // Neither alone: filled up, the density takes the rest.
+    // Density or fill alone cannot hold the mass: the fill becomes 1 and the density follows.
     const double full_density = mass / volume;
     if (!is_manual(set, "density") && !is_manual(set, "fill_fraction") && in_range("density", full_density)) {
         put_derived(set, "fill_fraction", 1.0, "full, to hold the manual mass");
@@ -43,7 +43,7 @@ void explain_mass(AttributeSet& set) {
     }
 }
 
-// Of cloth by its area, of a rope by its length.
+// Mass of cloth by its area, of a rope by its length.
 bool spread_mass(AttributeSet& set, const Form& form) {
     const bool is_sheet = matter_of(set) == Matter::sheet;
     const char* name = is_sheet ? "area_density" : "linear_density";
@@ -72,7 +72,7 @@ void update_mass(AttributeSet& set, const Form& form) {
     }
 }
 
-// The same distribution of another mass.
+// Inertia of the same mass distribution at another mass.
 void scale_inertia(AttributeSet& set, double mass_before) {
     const double mass = set.number("mass", mass_before);
     const AttributeEntry* held = set.find("inertia");
@@ -81,7 +81,7 @@ void scale_inertia(AttributeSet& set, double mass_before) {
     put_derived(set, "inertia", inertia, held->source + ", scaled to a mass of " + short_number(mass) + " kg");
 }
 
-// Sliding never takes more than sticking: the one that nobody set gives way.
+// Sliding friction is never above static friction: the one that nobody set is changed.
 void order_friction(AttributeSet& set) {
     const double at_rest = set.number("friction_static", 0);
     const double sliding = set.number("friction_dynamic", 0);
@@ -93,7 +93,7 @@ void order_friction(AttributeSet& set) {
     }
 }
 
-// Only static things collide with their triangles, and they do.
+// Only static things collide with their triangles, and static things always do.
 void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, PhysicalKind kind_before) {
     const PhysicalKind kind = kind_of(set);
     if (kind == kind_before || set.find("collision_shape") == nullptr) return;
@@ -101,7 +101,7 @@ void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, Physi
     replace(set, {"collision_shape", choice.shape, {}, {}, choice.source, choice.level});
 }
 
-// Valid entries only, each as a person's own, whatever level it came with.
+// Takes valid entries only, each at level `manual`, whatever its own level was.
 AttributeSet lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual) {
     AttributeSet set = automatic;
     for (AttributeEntry entry : manual) {
@@ -141,7 +141,7 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
     const double mass_before = automatic.number("mass", set.number("mass", 1));
     const PhysicalKind kind_before = kind_of(automatic);
 
-    // From the cause to what follows: material, mass, what depends on the mass.
+    // Causes first: material, mass, then attributes that depend on the mass.
     if (taxonomy != nullptr) update_material(set, *taxonomy);
     update_mass(set, form);
     scale_inertia(set, mass_before);

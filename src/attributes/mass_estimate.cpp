@@ -10,10 +10,10 @@
 namespace embody::attributes {
 namespace {
 
-// Standard deviations of ln(mass). They were chosen on measured objects that nobody fits single entries to
+// Standard deviations of ln(mass), chosen on measured objects; no single entry of the taxonomy was fitted to them
 // (docs/attributes.md).
-constexpr double spread_of_taxonomy = 0.1;  // between what a word means and the taxonomy's typical thing of its size
-constexpr double spread_of_unit_outside = 1.5;  // per factor e that the size lies outside what is usual
+constexpr double spread_of_taxonomy = 0.1;  // between the word's meaning and the taxonomy's typical thing of its size
+constexpr double spread_of_unit_outside = 1.5;  // per factor e by which the size is outside the usual range
 constexpr double spread_of_proportions = 1.2;   // per factor e by which the sides' proportions differ
 constexpr double spread_of_wrong_word = 1.0;    // of a category that is surely wrong
 constexpr double spread_of_any_thing = 1.1;     // of things of one size, whatever they are
@@ -26,7 +26,7 @@ std::string size_text(Vec3 size) {
     return short_number(size.x) + " x " + short_number(size.y) + " x " + short_number(size.z) + " m";
 }
 
-// Density × filled share × volume of a closed surface, for things that are not hollow.
+// Density × fill fraction × volume of a closed surface, for things that are not hollow.
 MassEstimate mass_of_solid(const CategoryData& category, const Substance& substance, const Form& form) {
     const auto product = [&](double density, double fill) { return density * fill * form.volume; };
     const Interval& density = substance.density;
@@ -41,14 +41,14 @@ MassEstimate mass_of_solid(const CategoryData& category, const Substance& substa
 
 double largest_of(Vec3 size) { return std::max({size.x, size.y, size.z}); }
 
-// Cloth that lies folded or rolled: far smaller than such things are when they hang or lie open, and no sheet.
+// Whether cloth is folded or rolled: it is far smaller than hanging or spread cloth of its category, and not flat.
 bool is_folded(const CategoryData& category, const Form& form) {
     return traits_of(category.kind).matter == Matter::sheet && category.scaling == MassScaling::area &&
            form.size_known && largest_of(form.size) < 0.2 * largest_of(category.at_size) &&
            std::min({form.size.x, form.size.y, form.size.z}) > 0.005;
 }
 
-// Then its box is full of cloth, layer on layer.
+// Folded cloth fills its box layer on layer.
 MassEstimate mass_of_folded(const CategoryData& category, const Form& form, AttributeLevel level) {
     constexpr Interval packed{90, 180, 300};  // kg/m³
     return {{packed.low * form.box_volume, packed.typical * form.box_volume, packed.high * form.box_volume},
@@ -57,7 +57,7 @@ MassEstimate mass_of_folded(const CategoryData& category, const Form& form, Attr
             level};
 }
 
-// The category's mass, carried over to this box.
+// The category's mass, scaled to this box.
 MassEstimate mass_of_box(const CategoryData& category, const Form& form, AttributeLevel level) {
     const Form usual = form_of({}, category.at_size);
     const bool by_area = category.scaling == MassScaling::area;
@@ -74,7 +74,7 @@ MassEstimate mass_of_box(const CategoryData& category, const Form& form, Attribu
     return {mass, source, level};
 }
 
-// How the proportions of a form differ from those of a category's box: standard deviation of ln(side ratio) over the
+// Difference between the proportions of a form and of a category's box: standard deviation of ln(side ratio) over the
 // sides, sorted by length.
 double difference_of_proportions(Vec3 form, Vec3 usual) {
     std::array<double, 3> sides{form.x, form.y, form.z}, others{usual.x, usual.y, usual.z};
@@ -82,7 +82,7 @@ double difference_of_proportions(Vec3 form, Vec3 usual) {
     std::ranges::sort(others);
     double mean = 0, square = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        // A form is never thinner than this, whatever the thing is.
+        // form_of() never makes a side thinner than this.
         const bool at_least = sides[i] <= least_extent;
         const double ratio = std::log(sides[i] / (at_least ? std::max(others[i], least_extent) : others[i]));
         mean += ratio / 3;
@@ -91,10 +91,10 @@ double difference_of_proportions(Vec3 form, Vec3 usual) {
     return std::sqrt(std::max(square - mean * mean, 0.0));
 }
 
-// Why the category's law may not hold for this thing, beyond what its interval says.
+// Reasons why the category's law may not hold for this thing, beyond the category's own interval.
 struct Doubt {
-    double variance = 0;  ///< of ln(mass): how little the category's answer says
-    double widening = 0;  ///< of that, what is seen in the errors of such answers
+    double variance = 0;  ///< of ln(mass): uncertainty of the category's answer
+    double widening = 0;  ///< part of the variance that shows in the errors of such answers
     std::string reasons;
 
     void add(double spread, const char* reason, double seen = 1) {
@@ -117,8 +117,8 @@ Doubt doubt_about(const Classification& what, const Form& form) {
     return doubt;
 }
 
-// Two answers that are independent, weighed by their precision, as errors of measurement are: the category's, as far as
-// it is doubted, and what any thing of this size weighs.
+// Mean of two independent answers weighted by their precision, as of errors of measurement: the category's mass with
+// its doubt, and the mass of any thing of this size.
 void draw_towards_any_thing(MassEstimate& estimate, Doubt& doubt, const CategoryData& any, const Form& form) {
     const double share = doubt.variance / (doubt.variance + spread_of_any_thing * spread_of_any_thing);
     const double mass_of_any = mass_of_box(any, form, AttributeLevel::standard).mass.typical;
@@ -130,7 +130,7 @@ void draw_towards_any_thing(MassEstimate& estimate, Doubt& doubt, const Category
                        " kg of any thing of this size, since " + doubt.reasons;
 }
 
-// The interval as wide as the doubt makes it.
+// Widens the interval by the doubt.
 void widen(MassEstimate& estimate, const Doubt& doubt) {
     const double more = within_80_percent * std::hypot(spread_of_taxonomy, std::sqrt(doubt.widening));
     Interval& mass = estimate.mass;
@@ -161,7 +161,7 @@ MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& wha
         doubt = {};
     } else {
         estimate = mass_of_box(category, form, what.level);
-        // Who weighed their own things knows better.
+        // A user who weighed the things knows their mass better.
         const bool is_users = category.said_by.contains("mass");
         if (form.size_known && &category != &any && !is_users) draw_towards_any_thing(estimate, doubt, any, form);
     }

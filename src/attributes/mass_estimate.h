@@ -10,23 +10,23 @@
 
 namespace embody::attributes {
 
-/// What a thing weighs, and what says so.
+/// Mass of a thing, and its source.
 struct MassEstimate {
     Interval mass;  ///< kg
     std::string source;
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// Exponent by which the mass of single things of a category grows with their box. The taxonomy's exponents say how the
-/// ideal thing grows. Boxes of real ones also differ by what weighs little (handles, legs, packs, poses, how they were
-/// measured), so that mass grows with 0.8 of that; not where things are nearly solid (0.95 and more), nor where a
-/// user's own file says it.
+/// Exponent by which the mass of single things of a category grows with their box. The taxonomy's exponents hold for
+/// ideal things. Boxes of real things also differ by light parts (handles, legs, packs, poses, how they were measured),
+/// so that the exponent is 0.8 of the taxonomy's. It stays the taxonomy's for things that are nearly solid (0.95 and
+/// more), and where a user's own file sets it.
 double mass_exponent(const CategoryData& category);
 
-/// The mass of a thing of this category, form and substance: density × filled share × volume where the category is
-/// solid and `closed` says that the surface is; else the category's mass carried over to the box. The more doubtful the
-/// category is, or the less the size and the proportions are those of such things, the more the estimate is what any
-/// thing of this size weighs (the taxonomy's "object"), and the wider its interval.
+/// The mass of a thing of this category, form and substance: density × fill fraction × volume where the category is
+/// solid and `closed` is true for the surface; else the category's mass scaled to the box. The more doubtful the
+/// category is, or the less usual the size and the proportions are for it, the closer the estimate is to the mass of
+/// any thing of this size (the taxonomy's "object"), and the wider its interval.
 MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const Substance& substance,
                            const Form& form, bool closed);
 

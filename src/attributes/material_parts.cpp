@@ -17,15 +17,16 @@ namespace {
 
 using geometry::MassProperties;
 
-constexpr double sheet_of_solid = 0.005;  // m: how thick a sheet is of a material that has no usual wall
-// How much thicker or thinner than usual walls may be; what is left of the mass then is made up by all parts alike.
+constexpr double sheet_of_solid = 0.005;  // m: thickness of a sheet of a material that has no usual wall
+// Range of wall thickness relative to the usual one; a mass that it cannot reach is reached by scaling all densities
+// alike.
 constexpr double thinnest = 0.05, thickest = 20;
 
 struct Amount {
     double wall = 0, core = 0;  // m³
 };
 
-// With walls `factor` times as thick as usual.
+// Volumes of wall and core with walls `factor` times as thick as usual.
 Amount amount_of(const MaterialPart& part, double factor) {
     const double volume = part.facts->form.solid.volume;
     if (!(volume > 0)) {
@@ -48,7 +49,7 @@ double total_mass(const std::vector<MaterialPart>& parts, double factor) {
     return sum;
 }
 
-// How much thicker than usual the walls must be; the sum grows with it.
+// Factor on the usual wall thickness at which the parts have this mass; the total mass grows with the factor.
 double fitting_walls(const std::vector<MaterialPart>& parts, double mass) {
     if (total_mass(parts, thinnest) >= mass) return thinnest;
     if (total_mass(parts, thickest) <= mass) return thickest;
@@ -60,7 +61,7 @@ double fitting_walls(const std::vector<MaterialPart>& parts, double mass) {
     return std::exp((low + high) / 2);
 }
 
-// The same distribution as a mass of its own: `volume` becomes kg.
+// The same distribution with the given mass: the field `volume` holds kg.
 MassProperties of_mass(const MassProperties& measured, double mass) {
     return {mass, measured.center, (mass / measured.volume) * measured.inertia};
 }
@@ -165,7 +166,7 @@ std::optional<CenterAndInertia> spread_over(const std::vector<MaterialPart>& par
     };
     if (are_of_one_material(parts) && std::ranges::all_of(parts, is_filled)) return std::nullopt;
 
-    // What the walls cannot make up (all parts filled, or cores too heavy) is made up by all densities alike.
+    // Where the walls cannot reach the mass (all parts filled, or cores too heavy), all densities are scaled alike.
     MassProperties whole;
     for (const MaterialPart& part : parts) whole = geometry::combined(whole, spread(part, factor));
     if (!(whole.volume > 0)) return std::nullopt;

@@ -6,7 +6,7 @@
 namespace embody::attributes {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // One row of the table is kept.
+    // Only one row of the table is kept.
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -22,7 +22,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-    // A long name is no slip of anything and would cost time.
+    // A long name is no typing error and would cost time.
     if (word.size() > 64) return {};
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From a noun to the taxonomy through WordNet: choice of the sense, then the nearest hypernym that is a category.
-// Kinship of meanings is the information content of what they have in common (P. Resnik, "Using information content to
-// evaluate semantic similarity in a taxonomy", IJCAI 1995), here from the number of synsets below a node in place of a
-// corpus.
+// The relatedness of meanings is the information content of their most specific common hypernym (P. Resnik, "Using
+// information content to evaluate semantic similarity in a taxonomy", IJCAI 1995), computed here from the number of
+// synsets below a node, without a corpus.
 #include "attributes/noun_reading.h"
 
 #include <algorithm>
@@ -20,11 +20,11 @@ using wordnet::SynsetIndex;
 using wordnet::Topic;
 
 constexpr std::size_t longest_collocation = 5;
-constexpr std::size_t meanings_asked = 12;  // of a noun; the rarer ones are hardly ever meant
+constexpr std::size_t meanings_asked = 12;  // of a noun; the rarer meanings are hardly ever right
 constexpr std::size_t words_asked = 24;     // of the surroundings
 
-// How often a meaning is meant: its count in the tagged texts, and for what these lack a share by its place in the
-// list.
+// Frequency of a meaning: its count in the tagged texts, plus a fraction that decreases with its place in the list, for
+// meanings without a count.
 double frequency(const NounSense& sense, std::size_t place) {
     return sense.tag_count + 1.0 / (1.0 + static_cast<double>(place));
 }
@@ -40,7 +40,7 @@ double physical_share(const NounTable& nouns, LemmaIndex noun) {
     return all > 0 ? physical / all : 0;
 }
 
-// What a model of a thing is likely to be a model of.
+// Prior for a topic: how likely somebody makes a 3D model of such a thing.
 double topic_factor(Topic topic) {
     switch (topic) {
         case Topic::artifact:
@@ -63,7 +63,7 @@ double topic_factor(Topic topic) {
     }
 }
 
-// The hypernyms of a meaning, itself first, nearest first, each with the steps up to it.
+// The hypernyms of a meaning, nearest first, each with its number of steps; the meaning itself is the first.
 struct Above {
     SynsetIndex synset;
     std::size_t steps;
@@ -81,8 +81,8 @@ std::vector<Above> all_above(const NounTable& nouns, SynsetIndex meaning) {
     return above;
 }
 
-// The nearest category; of two equally near ones the more specific. A made thing that WordNet hangs under places or
-// signs is still a made thing.
+// The nearest category; of two at equal distance the more specific. An artifact that WordNet puts under places or signs
+// still counts as an artifact.
 std::optional<NounReading> nearest_category(const Taxonomy::Data& data, SynsetIndex meaning) {
     std::optional<NounReading> best;
     const std::vector<Above> above_meaning = all_above(*data.nouns, meaning);
@@ -98,7 +98,7 @@ std::optional<NounReading> nearest_category(const Taxonomy::Data& data, SynsetIn
     return NounReading{data.by_synset.at(*made), meaning, *made, above_meaning.back().steps};
 }
 
-// 1 for a meaning that nothing is a kind of, 0 for what everything is.
+// Information content: 1 for a synset without hyponyms, 0 for the root.
 double content_of(const NounTable& nouns, SynsetIndex synset) {
     return 1 - std::log(nouns.count_of_kind(synset)) / std::log(nouns.synset_count());
 }
@@ -113,8 +113,7 @@ bool can_be_noun(const Token& token) {
     return token.text.size() > 1 && token.text.front() > '9' && !is_separating_word(token.text);
 }
 
-// Two letters are a size, a unit or an element far more often than what else they can mean, unless that is a thing
-// that is made: a TV, a PC.
+// Two letters are mostly a size, a unit or a chemical element, unless their first meaning is an artifact: a TV, a PC.
 std::optional<LemmaIndex> one_word(const NounTable& nouns, const Token& token) {
     if (!can_be_noun(token)) return std::nullopt;
     const auto lemma = nouns.find_inflected(token.text);
@@ -129,7 +128,7 @@ std::optional<LemmaIndex> lemma_at(const NounTable& nouns, const std::vector<Tok
         if (tokens[i].text == ",") return std::nullopt;
     }
     if (const auto lemma = nouns.find_inflected(joined(tokens, first, length, "_"))) return lemma;
-    // What is one word in WordNet: "flower pot".
+    // Two tokens that are one word in WordNet: "flower pot".
     const bool could_join = length == 2 && can_be_noun(tokens[first]) && can_be_noun(tokens[first + 1]);
     return could_join ? nouns.find_inflected(joined(tokens, first, length, "")) : std::nullopt;
 }
@@ -160,7 +159,7 @@ Surroundings::Surroundings(const Taxonomy::Data& data, const ModelFacts& facts)
     for (const std::string& tag : facts.tags) add_words(tokens_of(tag), nullptr);
     add_words(tokens_of(facts.folder), nullptr);
 
-    // The catalogue's own category says a room or a trade, which is what our files are called by too.
+    // The catalogue's own category names a room or a trade, and so do our files.
     const std::vector<Token> category = tokens_of(facts.catalogue_category);
     add_words(category, nullptr);
     for (const Token& token : category) domains_.insert(token.stem);
@@ -188,8 +187,8 @@ void Surroundings::add_words(const std::vector<Token>& tokens, const NounOccurre
     }
 }
 
-// Information content of the most specific thing that the meaning shares with another word. Of a kind of what another
-// word says (a bat beside "animal") more than that, unless that word says next to nothing ("object").
+// Information content of the most specific common hypernym of the meaning and of another word. Higher where the meaning
+// is a kind of the other word's (a bat beside "animal"), unless that word says next to nothing ("object").
 std::optional<double> Surroundings::kinship(SynsetIndex meaning) const {
     if (above_words_.empty()) return std::nullopt;
     constexpr double of_that_kind = 0.75;
@@ -203,17 +202,17 @@ std::optional<double> Surroundings::kinship(SynsetIndex meaning) const {
     return most;
 }
 
-// 1 within the usual size of the category, falling with the factor by which the size lies outside.
+// 1 within the usual size of the category; decreases with the factor by which the size is outside.
 double Surroundings::size_fit(const CategoryData& category) const {
     if (largest_ <= 0) return 1;
     const double outside = outside_usual_size(category, largest_);
-    // A size whose unit is only guessed says less.
+    // A size with a guessed unit counts less.
     const double strength = size_is_stated_ ? 1.5 : 0.4;
     return std::max(std::exp(-strength * outside), 0.05);
 }
 
 double Surroundings::support(std::optional<SynsetIndex> meaning, const CategoryData& category) const {
-    // What nearly everything shares, such as artifact.n.01, tells nothing.
+    // A hypernym of nearly everything, such as artifact.n.01, says nothing.
     const double kin = meaning ? kinship(*meaning).value_or(0) : 0;
     const double related = std::exp(5 * std::max(kin - 0.25, 0.0));
     const double at_home = domains_.contains(category.domain) ? 1.6 : 1;
@@ -230,7 +229,7 @@ std::vector<NounReading> readings_of(const Taxonomy::Data& data, LemmaIndex noun
         if (!nouns.is_physical(meaning) || nouns.is_instance(meaning)) continue;
         auto reading = nearest_category(data, meaning);
         if (!reading) continue;
-        // Counts of a corpus of essays and news say little of a catalogue of things: only their square root is used.
+        // Counts from essays and news say little about a catalogue of things: only their square root is used.
         reading->prior = std::sqrt(frequency(senses[i], i)) * topic_factor(nouns.topic(meaning)) *
                          std::pow(0.85, static_cast<double>(reading->steps));
         reading->fit = reading->prior * surroundings.support(meaning, data.categories[reading->entry]);
@@ -240,7 +239,7 @@ std::vector<NounReading> readings_of(const Taxonomy::Data& data, LemmaIndex noun
     for (NounReading& reading : readings) reading.prior /= priors;
     std::ranges::stable_sort(readings, std::greater{}, &NounReading::fit);
 
-    // Meanings that lead to the same category speak for it together.
+    // Meanings that lead to the same category are added.
     std::vector<NounReading> best;
     double sum = 0;
     for (const NounReading& reading : readings) {

@@ -18,7 +18,7 @@ std::string join(std::span<const Token> tokens, std::string Token::*member) {
     return joined;
 }
 
-// Of phrases with equal stems ("glass", "glasses") the one that is written as in the text wins, then the singular.
+// Of phrases with equal stems ("glass", "glasses") the one that is written as in the text is chosen, then the singular.
 const Phrase* best_spelling(const PhraseIndex& index, std::span<const Token> tokens) {
     const std::string stems = join(tokens, &Token::stem);
     const std::string written = join(tokens, &Token::text);
@@ -73,7 +73,7 @@ std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t lo
     if (found.empty()) return std::nullopt;
     const Occurrence& best = *std::min_element(found.begin(), found.end(), says_more);
 
-    // What else the text could have meant, for the reader; parts of the deciding phrase say nothing more.
+    // Other phrases of the text, for the reader; parts of the deciding phrase are left out.
     PhraseMatch match{
         best.phrase->entry, best.phrase->text, best.segment, best.end - best.phrase->length, best.end, {}};
     for (const Occurrence& other : found) {

@@ -13,12 +13,12 @@ namespace embody::attributes {
 struct PhraseMatch {
     std::size_t entry = 0;
     std::string phrase;               ///< the words that decided
-    int segment = 0;                  ///< in which part of the text they stand, counted by separators
+    int segment = 0;                  ///< index of the part of the text that they are in, counted by separators
     std::size_t first = 0, end = 0;   ///< indices of their tokens: from first to before end
-    std::vector<std::string> others;  ///< phrases of other entries in the same text that did not
+    std::vector<std::string> others;  ///< phrases of other entries in the same text, which did not decide
 };
 
-/// Adds the phrase to the index; false where the very same words stand there already.
+/// Adds the phrase to the index; false where the same words are in it already.
 bool add_phrase(PhraseIndex& index, std::string_view words, std::size_t entry);
 
 /// The phrase that says what a thing is: in the first part of the name that has one ("chair with cushion"), the last

@@ -12,19 +12,20 @@
 
 namespace embody::attributes {
 
-/// What a thing is to the simulation: the attribute "kind", in the order in which kinds are offered to people. Text is
-/// only in files, in the database and in messages. What a kind is like stands in traits_of.
+/// What a thing is to the simulation: the attribute "kind", in the order in which people see the kinds. The text form
+/// is used only in files, in the database and in messages. traits_of() has the properties of each kind.
 enum class PhysicalKind : std::uint8_t { static_body, rigid, articulated, soft, cloth, rope, fluid, granular, visual };
 
-/// What things of a kind are simulated as. Several kinds may have the same.
+/// How things of a kind are simulated. Several kinds may have the same.
 enum class Matter : std::uint8_t { none, body, solid, sheet, line, liquid, grains };
 
-/// What all parts of the program ask of a kind.
+/// The properties of a kind.
 struct KindTraits {
-    std::string_view text = {};     ///< in files, databases and messages: it must not change
+    std::string_view text =
+        {};  ///< in files, databases and messages: it must not change, since files and databases hold it
     std::string_view meaning = {};  ///< for people, after the text: "rope is a line"
-    /// Of the attributes that concern such things, as in AttributeDescription::applies_to: the kind's own letter, then
-    /// those of kinds whose attributes it has too. Empty: only the attributes of identity concern it.
+    /// Letters of the attributes that concern this kind, as in AttributeDescription::applies_to: the kind's own letter,
+    /// then those of kinds whose attributes it has too. Empty: only the attributes of identity concern it.
     std::string_view letters = {};
     Matter matter = Matter::body;
     bool never_moves = false;
@@ -58,14 +59,14 @@ constexpr KindTraits traits_of(PhysicalKind kind) {
     return {};
 }
 
-/// How many kinds there are: what has no row is none.
+/// The number of kinds: the first value without a row ends the count.
 inline constexpr std::size_t kind_count = [] {
     std::size_t count = 0;
     while (!traits_of(static_cast<PhysicalKind>(count)).text.empty()) ++count;
     return count;
 }();
 
-/// All, in the order of the enumeration.
+/// All kinds, in the order of the enumeration.
 inline constexpr auto physical_kinds = [] {
     std::array<PhysicalKind, kind_count> kinds{};
     for (std::size_t i = 0; i < kind_count; ++i) kinds[i] = static_cast<PhysicalKind>(i);
@@ -74,16 +75,16 @@ inline constexpr auto physical_kinds = [] {
 
 /// "static", "rigid", …
 std::string to_text(PhysicalKind kind);
-/// Nothing for any other text.
+/// Empty for any other text.
 std::optional<PhysicalKind> kind_from_text(std::string_view text);
 
 /// The kind as the value of the attribute "kind".
 AttributeValue to_value(PhysicalKind kind);
-/// Nothing for a value that is no kind.
+/// Empty for a value that is no kind.
 std::optional<PhysicalKind> kind_from_value(const AttributeValue& value);
-/// Of a thing with these attributes; rigid where they say nothing, as the registry's default is.
+/// The kind of a thing with these attributes; rigid, the registry's default, where they have none.
 PhysicalKind kind_of(const AttributeSet& set);
-/// What a thing with these attributes is simulated as.
+/// How a thing with these attributes is simulated.
 Matter matter_of(const AttributeSet& set);
 
 /// Whether such things never move.
@@ -92,7 +93,7 @@ bool is_static(PhysicalKind kind);
 bool is_thin(PhysicalKind kind);
 /// Whether such things keep their parts together and bend: soft solids, sheets, lines.
 bool is_deformable(PhysicalKind kind);
-/// Whether such things flow and have the form of what holds them: liquids, grains.
+/// Whether such things flow and take the form of their container: liquids, grains.
 bool flows(PhysicalKind kind);
 /// Whether such things are no rigid body: those that bend or flow.
 bool changes_form(PhysicalKind kind);

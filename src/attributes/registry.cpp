@@ -35,7 +35,7 @@ Error unknown_name(std::string_view name) {
             least = distance;
         }
     }
-    // A name that shares nothing gets no guess.
+    // A name that is similar to none gets no guess.
     const bool close = least <= std::max<std::size_t>(2, nearest->name.size() / 2);
     return {std::string(name.substr(0, 64)), "there is no attribute of this name",
             close ? "did you mean \"" + nearest->name + "\"?" : ""};

@@ -17,26 +17,26 @@ namespace embody::attributes {
 
 enum class ValueType : std::uint8_t { number, word, truth, vector, tensor };
 
-/// What an attribute is: the one source of truth for the API, the scene schema, the command line, the Studio's panel
-/// and the documentation.
+/// Description of an attribute: the one source of truth for the API, the scene schema, the command line, the Studio's
+/// panel and the documentation.
 struct AttributeDescription {
     std::string name;  ///< e.g. "friction_dynamic"
     std::string
         kind;  ///< the paper's attr_kind: identity, mass, shape, surface, motion, soft, cloth, rope, fluid, grain
-    std::string kind_label;  ///< of that, for people: "Soft body"
+    std::string kind_label;  ///< the kind, for people: "Soft body"
     ValueType type = ValueType::number;
-    std::string unit;                  ///< SI, "1" for a pure number, "" for words
-    AttributeValue standard;           ///< default value
-    std::optional<double> low, high;   ///< valid range of a number or of each component
-    int size_power = 0;                ///< of a thing's size that it grows with; 0: it is the material's
-    bool whole = false;                ///< a count or a set of bits: a number without fraction
+    std::string unit;                 ///< SI, "1" for a pure number, "" for words
+    AttributeValue standard;          ///< default value
+    std::optional<double> low, high;  ///< valid range of a number or of each component
+    int size_power = 0;  ///< power of a thing's size that the value grows with; 0: a property of the material
+    bool whole = false;  ///< a count or a set of bits: a number without fraction
     std::vector<std::string> choices;  ///< of a word; empty: any word
     std::string applies_to;            ///< letters of the physical kinds that it concerns, as in KindTraits
     std::string label;                 ///< for people, e.g. "Sliding friction"
     std::string help;                  ///< one sentence
 };
 
-/// Own letters of all physical kinds that have one, for AttributeDescription::applies_to; ends with a zero.
+/// The own letters of all physical kinds that have one, for AttributeDescription::applies_to; ends with a zero.
 inline constexpr auto every_kind = [] {
     std::array<char, kind_count + 1> letters{};
     std::size_t count = 0;
@@ -52,8 +52,8 @@ bool applies_to(const AttributeDescription& attribute, PhysicalKind kind);
 const std::vector<AttributeDescription>& registry();
 const AttributeDescription* describe(std::string_view name);
 
-/// Whether the name exists, the type fits and the value is in range; the error says range or choices, and for a wrong
-/// name the nearest right one.
+/// Whether the name exists, the type is right and the value is in range. The error says the range or the choices, and
+/// for a wrong name the nearest right one.
 Result<void> validate(std::string_view name, const AttributeValue& value);
 
 /// Reads a value typed by a person ("0.5", "true", "oak", "1,2,3") and validates it.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vocabulary: a superset of KHR_physics_rigid_bodies, UsdPhysics with its PhysX and OmniPhysics schemas, MJCF and
-// SDFormat. Which kinds a row concerns is said by their letters in the table of kinds (traits_of); things that are only
-// drawn have the identity attributes.
+// SDFormat. A row names the kinds that it concerns by their letters in the table of kinds (traits_of); things that are
+// only drawn have the identity attributes.
 #include "attributes/registry_table.h"
 
 #include "attributes/model_facts.h"
@@ -31,7 +31,7 @@ std::string help_of_kinds() {
 
 using Rows = std::vector<AttributeDescription>;
 
-// What most rows say of themselves; kind and type come from the group and the builder below.
+// The texts of most rows; kind and type come from the group and the builder below.
 struct Text {
     const char* name;
     const char* applies_to;
@@ -39,7 +39,7 @@ struct Text {
     const char* help;
 };
 
-// Appended to the help of what is kept, shown and exported, but does not yet change the simulation.
+// Adds a note to the help of an attribute that is kept, shown and exported, but does not yet change the simulation.
 std::string with_note(const char* help, bool simulated) {
     return simulated ? std::string(help) : std::string(help) + " Stored and exported, not simulated yet.";
 }
@@ -50,7 +50,7 @@ struct Group {
     const char* label;
     bool simulated = true;
 
-    /// For what is kept, shown and exported, but does not yet change the simulation.
+    /// For attributes that are kept, shown and exported, but do not yet change the simulation.
     [[nodiscard]] Group unsimulated() const { return {rows, kind, label, false}; }
 
     void number(const Text& text, const char* unit, double standard, double low, double high) const {
@@ -81,7 +81,7 @@ struct Group {
         row.high = high;
         rows.push_back(std::move(row));
     }
-    /// The row before: with this power of the thing's size.
+    /// The row that was added last grows with this power of the thing's size.
     void grows_with_size(int power) const { rows.back().size_power = power; }
 
 private:
@@ -127,7 +127,7 @@ void add_mass(Rows& rows) {
     group.grows_with_size(3);
     group.number({"density", "SRAVFG", "Material density", "Density of the material itself, without hollows."}, "kg/m³",
                  1000, 0.1, 22600);
-    // The lower ends of these two leave room for models that are kilometres long by mistake.
+    // The lower bounds of these two leave room for models that are kilometres long by mistake.
     group.number({"bulk_density", "SRAV", "Bulk density", "Mass divided by the volume of the bounding box."}, "kg/m³",
                  180, 1e-9, 22600);
     group.number({"fill_fraction", "SRAV", "Fill", "Share of the volume that material takes up; the rest is hollow."},

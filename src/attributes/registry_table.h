@@ -7,7 +7,7 @@
 
 namespace embody::attributes {
 
-/// The rows of the registry, written out once; registry() keeps them.
+/// The rows of the registry; registry() keeps them.
 std::vector<AttributeDescription> make_registry_table();
 
 }  // namespace embody::attributes

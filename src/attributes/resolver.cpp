@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's mapping (Fig. 4): words → category → physical kind → attribute set; then what geometry tells.
+// The paper's mapping (Fig. 4): words → category → physical kind → attribute set; then attributes from the geometry.
 #include "attributes/resolver.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     const auto kind = [&](PhysicalKind of_it, const std::string& source, AttributeLevel level) {
         set.put({"kind", to_value(of_it), {}, {}, source, level});
     };
-    // Who says whether it moves: the catalogue's flags before the category.
+    // Whether it moves: the catalogue's flags decide before the category.
     if (facts.door_or_window) {
         kind(PhysicalKind::static_body, "the catalogue says that it is a door or window", AttributeLevel::model);
     } else if (facts.movable) {
@@ -56,8 +56,8 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     }
 }
 
-// A length far outside what such things measure is a sign of a wrong unit: said here, mended by the person or the
-// importer.
+// A length far outside the usual size is a sign of a wrong unit: the source says so, and the person or the importer
+// corrects it.
 void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& category, const Form& form) {
     std::string source = facts.size_is_stated ? "size stated by the catalogue" : "file taken to be in metres";
     const double largest = std::max({form.size.x, form.size.y, form.size.z});
@@ -74,7 +74,7 @@ void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& c
 }
 
 void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& substance, const Form& form) {
-    // Into the registry's range, and never denser than the densest element.
+    // The mass is clamped to the registry's range and to the density of the densest element.
     const AttributeDescription& range = *describe("mass");
     const double most = std::min(*range.high, heaviest_density * form.volume);
     const auto possible = [&](double mass) { return std::clamp(mass, std::min(*range.low, most), most); };
@@ -82,7 +82,7 @@ void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& 
     set.put({"mass", mass.typical, mass.low, mass.high, estimate.source, estimate.level});
     set.put({"volume", form.volume, {}, {}, form.volume_source, form.volume_level});
 
-    // Mass = density × fill × volume: the materials say the density, and fill is what remains, up to full.
+    // Mass = density × fill × volume: the materials set the density, and the fill follows, at most 1.
     const Interval& density = substance.density;
     const double fill = mass.typical / (density.typical * form.volume);
     if (fill <= 1) {
@@ -108,7 +108,7 @@ void put_form(AttributeSet& set, const ModelFacts& facts, const std::vector<Mate
     set.put({"collision_shape", shape.shape, {}, {}, shape.source, shape.level});
 }
 
-// What the category says beside mass and material, where it concerns the kind that the model ended with.
+// The category's values other than mass and material, where they concern the final kind.
 void put_category_attributes(AttributeSet& set, const Classification& what) {
     const PhysicalKind kind = kind_of(set);
     for (const CategoryAttribute& usual : what.category->attributes) {
@@ -156,7 +156,7 @@ AttributeSet resolve_as(const Taxonomy::Data& data, const ModelFacts& facts, Cla
     put_identity(set, facts, what);
     put_surface(set, *surface.material, surface.source, surface.level);
 
-    // Its form tells how much of that there is, and where.
+    // The form determines the mass and its distribution.
     const Form form = form_of(facts.geometry, what.category->at_size);
     put_scale(set, facts, *what.category, form);
     const std::vector<MaterialPart> parts = material_parts(data, facts, *what.category, surface);
@@ -166,13 +166,13 @@ AttributeSet resolve_as(const Taxonomy::Data& data, const ModelFacts& facts, Cla
     put_form(set, facts, parts, form);
     put_category_attributes(set, what);
 
-    // Defaults for the rest.
+    // Defaults for the attributes that are still missing.
     complete_for_kind(set);
     put_fineness(set, facts.geometry, form);
     return set;
 }
 
-// An entry of that name, else one that has the word.
+// The entry of this name, else the entry that has the word.
 const CategoryData* category_called(const Taxonomy::Data& data, std::string_view word) {
     if (const CategoryData* category = data.category(word)) return category;
     const auto phrase = data.category_phrases.find(stems_of(word));
@@ -201,7 +201,7 @@ std::optional<AttributeSet> resolve_primitive(const Taxonomy& taxonomy, std::str
     what.level = known->parent.empty() ? AttributeLevel::category : AttributeLevel::subcategory;
     AttributeSet set = resolve_as(data, facts, std::move(what));
 
-    // Its form is known exactly; moments are those of the whole shape, wherever its origin lies.
+    // The form of a primitive is exact; its moments are those of the whole shape, wherever its origin is.
     const GeometryFacts& form = facts.geometry;
     if (form.volume > 0) {
         const double mass = set.number("mass", 1);

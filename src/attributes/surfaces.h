@@ -21,11 +21,11 @@ struct SurfacePairData {
     std::string source;
 };
 
-/// Which materials behave alike against others, and how each pair of such families does: data/taxonomy/
-/// material_pairs.json.
+/// Families of materials with the same friction, and the values of each pair of families:
+/// data/taxonomy/material_pairs.json.
 class Surfaces {
 public:
-    /// Every family's material must be one of `materials`, and in no other family; a pair stands in the file once.
+    /// Every family's material must be one of `materials`, and in no other family; a pair occurs once in the file.
     /// Errors name file, row and field.
     static Result<Surfaces> load(const std::filesystem::path& file, const std::vector<MaterialData>& materials);
 
@@ -34,9 +34,9 @@ public:
     /// Typical values of all pairs, for a world.
     [[nodiscard]] const physics::SurfacePairs& table() const { return table_; }
     [[nodiscard]] const std::vector<std::string>& families() const { return families_; }
-    /// As in the file.
+    /// All pairs, as in the file.
     [[nodiscard]] const std::vector<SurfacePairData>& pairs() const { return pairs_; }
-    /// Of two materials; null where the table says nothing.
+    /// The values of two materials; null where the table has none.
     [[nodiscard]] const SurfacePairData* pair(std::string_view material_a, std::string_view material_b) const;
 
 private:

@@ -46,14 +46,14 @@ Result<MaterialData> read_material(const json& object, const std::string& where)
     return material;
 }
 
-// A choice of the registry's attribute of the same name.
+// Refuses a value that is no choice of the registry's attribute of the same name.
 void check_choice(FieldReader& reader, const char* attribute, const std::string& value) {
     const auto valid = validate(attribute, value);
     if (!value.empty() && !valid) reader.refuse(attribute, valid.error().why);
 }
 
-// {"youngs_modulus": {"value": [low, typical, high], "source": "…"}}: numbers of the registry that the entry's kind
-// has.
+// Reads {"youngs_modulus": {"value": [low, typical, high], "source": "…"}}: numbers of the registry that the entry's
+// kind has.
 void read_attributes(FieldReader& reader, CategoryData& category) {
     const json* object = reader.object("attributes");
     if (object == nullptr) return;
@@ -79,17 +79,17 @@ void read_attributes(FieldReader& reader, CategoryData& category) {
     }
 }
 
-// What has no form of its own, so that a model shows it in a container, on a roll, as one piece.
+// Whether things of the category have no form of their own, so that a model shows a container, a roll or one piece.
 bool is_stuff(const CategoryData& category) { return flows(category.kind) || is_thin(category.kind); }
 
-// What the entry is when it moves.
+// The kind of the entry where it moves.
 void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind) {
     check_choice(reader, "kind", text);
     kind = kind_from_text(text).value_or(kind);
     if (is_static(kind)) reader.refuse("kind", "must say what it is when it moves; static is \"movable\": false");
 }
 
-// Of the box and of the largest extent, m.
+// Extents of the usual box and range of the largest extent, m.
 void read_lengths(FieldReader& reader, CategoryData& category) {
     constexpr NumberRange length{1e-5, 1e4};
     std::array<double, 3> size{category.at_size.x, category.at_size.y, category.at_size.z};
@@ -102,7 +102,8 @@ void read_lengths(FieldReader& reader, CategoryData& category) {
 }
 
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
-    // A subcategory starts as its category; words are its own, and numbers that it changes need a source of their own.
+    // A subcategory starts as a copy of its category, without the words; numbers that it changes need a source of their
+    // own.
     CategoryData category = parent != nullptr ? *parent : CategoryData{};
     const bool top = parent == nullptr;
     category.words.clear();
@@ -146,14 +147,14 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     }
     if (scaling != "volume" && scaling != "area") reader.refuse("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
-    // Those of a parent of another kind say nothing of this one.
+    // Attributes of a parent of another kind do not apply to this one.
     std::erase_if(category.attributes, [&](const CategoryAttribute& a) { return !applies_to(a.name, category.kind); });
     read_attributes(reader, category);
     if (!reader.finish()) return *reader.error();
     return category;
 }
 
-// Names are unique, and every phrase belongs to one entry only: else the answer would depend on the order in the file.
+// Names are unique, and every phrase belongs to only one entry: else the answer would depend on the order in the file.
 template <class Entry>
 Result<void> index_entry(PhraseIndex& index, std::size_t& longest, const std::vector<Entry>& entries,
                          const std::string& where) {
@@ -170,13 +171,13 @@ Result<void> index_entry(PhraseIndex& index, std::size_t& longest, const std::ve
     return {};
 }
 
-// Of two entries with one meaning the more general: a category before a subcategory, then the wider interval of mass.
+// Of two entries with one meaning the more general is a category before a subcategory, then the wider interval of mass.
 bool is_more_general(const CategoryData& a, const CategoryData& b) {
     if (a.parent.empty() != b.parent.empty()) return a.parent.empty();
     return a.mass.high * b.mass.low > b.mass.high * a.mass.low;
 }
 
-// The entry's meaning, so that hypernyms lead to it.
+// Registers the entry's meaning, so that hypernyms lead to it.
 Result<void> index_synset(Taxonomy::Data& data, const std::string& where) {
     const CategoryData& added = data.categories.back();
     if (added.synset.empty()) return {};
@@ -205,7 +206,7 @@ Result<void> add_category(Taxonomy::Data& data, CategoryData category, const std
     return index_entry(data.category_phrases, data.longest_phrase, data.categories, where);
 }
 
-// Beside the taxonomy where somebody put it there, else where the build wrote it.
+// The table is read from the taxonomy's folder where it has one, else from the place where the build wrote it.
 Result<void> load_nouns(Taxonomy::Data& data, const std::filesystem::path& folder) {
     const std::filesystem::path own = folder / "wordnet-nouns.table";
     auto nouns = wordnet::NounTable::load(std::filesystem::exists(own) ? own : EMBODY_WORDNET_TABLE);
@@ -243,7 +244,7 @@ Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& f
     return {};
 }
 
-// Which values are the user's: his own, and those inherited from a category that he changed.
+// Notes which values are the user's: those in the user's file, and those inherited from a category that it changed.
 void note_users(CategoryData& category, const TaxonomyEntry& entry) {
     for (const auto& [field, value] : (*entry.object).items()) {
         const auto file = entry.users.find(field);
@@ -270,7 +271,7 @@ Result<void> load_category_tree(Taxonomy::Data& data, const TaxonomyEntry& entry
     return {};
 }
 
-// The entry that a model of a substance is may stand in any file: only now are all known.
+// The entry that shows a substance as a model may be in any file: all entries are known only now.
 Result<void> find_model_entries(Taxonomy::Data& data) {
     for (CategoryData& substance : data.categories) {
         if (substance.modelled_as.empty()) continue;
@@ -289,7 +290,7 @@ Result<void> find_model_entries(Taxonomy::Data& data) {
     return {};
 }
 
-// All files of the folder, in the order of their names.
+// Reads all files of the folder, in the order of their names.
 Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::path& folder,
                                 const std::filesystem::path& user_folder) {
     std::error_code failure;
@@ -345,7 +346,7 @@ std::unique_ptr<Taxonomy> Taxonomy::without(std::string_view category) const {
     std::unique_ptr<Taxonomy> rest(new Taxonomy);
     *rest->data_ = *data_;
     rest->surfaces_ = surfaces_;
-    // The entries keep their places; nothing leads to the hidden ones any more.
+    // The entries keep their indices; nothing leads to the hidden ones any more.
     const auto hidden = [&](std::size_t entry) {
         const CategoryData& held = data_->categories[entry];
         return held.name == category || held.parent == category;

@@ -25,12 +25,12 @@ struct MaterialData {
     std::string name;
     std::vector<std::string> words;
     Interval density;          ///< kg/m³
-    Interval friction_static;  ///< against a like or a common dry partner
+    Interval friction_static;  ///< against the same or a common dry partner
     Interval friction_dynamic;
     double friction_rolling = 0;  ///< m
     Interval restitution;
-    Interval wall;     ///< m, how thick things are made of it; all 0: solid throughout
-    std::string core;  ///< the material that fills things covered with it, such as foam; empty: they are hollow
+    Interval wall;     ///< m, usual wall thickness of things made of it; all 0: solid throughout
+    std::string core;  ///< the material inside things covered with it, such as foam; empty: they are hollow
     std::string source;
 };
 
@@ -44,15 +44,15 @@ struct CategoryAttribute {
     std::string source;
 };
 
-/// A category or subcategory of data/taxonomy/categories; what a subcategory leaves out is its category's.
+/// A category or subcategory of data/taxonomy/categories; a subcategory inherits the fields that it leaves out.
 struct CategoryData {
     std::string name;
     std::string parent;  ///< of a subcategory: its category; else empty
     std::string domain;  ///< its file without ".json", such as "kitchen"
     std::string synset;  ///< its meaning in WordNet 3.0, such as "chair.n.01"; empty where WordNet has none
     std::vector<std::string> words;
-    std::vector<std::string> catalogue;       ///< names of catalogue categories that mean this where no word tells more
-    PhysicalKind kind = PhysicalKind::rigid;  ///< when movable; never static
+    std::vector<std::string> catalogue;       ///< catalogue categories that mean this where no word says more
+    PhysicalKind kind = PhysicalKind::rigid;  ///< its kind when movable; never static
     std::string placement;
     bool movable = true;
     Interval mass;  ///< kg, of a thing of at_size
@@ -63,15 +63,16 @@ struct CategoryData {
     bool solid = false;                    ///< the closed surface is filled to fill_fraction with the material
     Interval fill_fraction;                ///< used where solid
     std::string material;
-    std::string source;                                       ///< of the numbers above
-    std::map<std::string, std::string, std::less<>> said_by;  ///< field → the user's file, where it is not ours
-    std::vector<CategoryAttribute> attributes;  ///< what else is usual, such as the stiffness of a cushion
-    std::string modelled_as;                 ///< of beer the entry that a model of it is, "beer bottle"; empty: itself
+    std::string source;  ///< of the numbers above
+    std::map<std::string, std::string, std::less<>>
+        said_by;  ///< field → the user's file that set it; fields of our own files are absent
+    std::vector<CategoryAttribute> attributes;  ///< other usual values, such as the stiffness of a cushion
+    std::string modelled_as;  ///< name of the entry that a model of it shows, for beer "beer bottle"; empty: itself
     std::optional<std::size_t> model_entry;  ///< index of that entry
 };
 
-/// ln of the factor by which this largest extent (m, positive) lies outside the usual size; 0 within. Cloth and rope
-/// may lie folded, so that nothing is too small for them.
+/// ln of the factor by which this largest extent (m, positive) is outside the usual size; 0 within. Cloth and rope may
+/// be folded, so that nothing is too small for them.
 double outside_usual_size(const CategoryData& category, double largest);
 
 /// A phrase that names an entry, e.g. "coffee table".
@@ -90,7 +91,7 @@ struct Taxonomy::Data {
     PhraseIndex category_phrases, material_phrases;
     std::map<std::string, std::size_t, std::less<>> by_catalogue;  ///< stems of the catalogue's category → index
     std::size_t unknown = 0;                                       ///< index of the category "object"
-    std::map<std::string, std::string, std::less<>> user_words;    ///< stems → the user's file that gave the word
+    std::map<std::string, std::string, std::less<>> user_words;    ///< stems → the user's file that added the word
     std::size_t longest_phrase = 1;
     std::shared_ptr<const wordnet::NounTable> nouns;                  ///< never null once loaded
     std::unordered_map<wordnet::SynsetIndex, std::size_t> by_synset;  ///< index of the entry that has this meaning

@@ -22,7 +22,7 @@ std::string text_of(const json& object, const char* field) {
     return object[field].get<std::string>();
 }
 
-/// The entry of this name, and the category that it is under.
+/// The entry of this name, and its category.
 struct Found {
     TaxonomyEntry* entry = nullptr;
     TaxonomyEntry* parent = nullptr;
@@ -37,7 +37,7 @@ Found find(std::vector<TaxonomyEntry>& entries, const std::string& name) {
     return {};
 }
 
-// Takes a word from every entry but its new owner.
+// Removes a word from every entry but its new owner.
 void take_word(TaxonomyEntry& entry, const TaxonomyEntry& owner, const std::string& stems) {
     if (&entry != &owner && (*entry.object).is_object() && (*entry.object).contains("words")) {
         json kept = json::array();
@@ -65,7 +65,7 @@ Result<void> give_words(std::vector<TaxonomyEntry>& entries, TaxonomyEntry& owne
     return {};
 }
 
-// Every source says that it is the user's.
+// Marks every source as the user's.
 void sign(json& object, const std::string& file) {
     if (!text_of(object, "source").empty()) object["source"] = "your " + file + ": " + text_of(object, "source");
     if (!object.contains("attributes") || !object["attributes"].is_object()) return;
@@ -75,7 +75,7 @@ void sign(json& object, const std::string& file) {
     }
 }
 
-// Numbers of the old kind say nothing of the new one.
+// Numbers of the old kind do not apply to the new one.
 void drop_foreign_attributes(TaxonomyEntry& entry, PhysicalKind kind) {
     if ((*entry.object).contains("attributes") && (*entry.object)["attributes"].is_object()) {
         json kept = json::object();
@@ -102,7 +102,7 @@ Result<void> change_entry(TaxonomyEntry& entry, const TaxonomyEntry& given, cons
     sign(signed_object, file);
     for (const auto& [field, value] : signed_object.items()) {
         if (field == "name") continue;
-        if (field == "source" && !gives_mass) continue;  // ours goes on to speak of our mass
+        if (field == "source" && !gives_mass) continue;  // our source stays, since it describes our mass
         json& held = (*entry.object)[field];
         const bool joins_list = (field == "words" || field == "catalogue") && value.is_array() && held.is_array();
         if (joins_list) {
@@ -116,7 +116,7 @@ Result<void> change_entry(TaxonomyEntry& entry, const TaxonomyEntry& given, cons
             entry.users[field] = file;
         }
     }
-    // What is wrong with it now is the user's to mend.
+    // Errors of the entry are now the user's to correct.
     entry.where = given.where;
     return {};
 }
@@ -148,7 +148,7 @@ Result<void> lay_entry_over(std::vector<TaxonomyEntry>& entries, TaxonomyEntry g
         sign_new(added, file);
         (parent != nullptr ? parent->subcategories : entries).push_back(std::move(added));
     }
-    // Found anew: adding may have moved the entries.
+    // The entry is searched again: adding may have moved the entries.
     if (auto words = give_words(entries, *find(entries, name).entry, given, file, user_words); !words) return words;
     for (const TaxonomyEntry& one : inner) {
         TaxonomyEntry* owner = find(entries, name).entry;

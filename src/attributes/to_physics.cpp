@@ -17,7 +17,7 @@
 namespace embody::attributes {
 namespace {
 
-// Of a word of the registry; its default where a file left it out.
+// Combine rule of a word of the registry; the default where a file left it out.
 physics::CombineRule combine_rule(const std::string& name) {
     constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 7> rules{
         {{"pair_table", physics::CombineRule::pair_table},
@@ -33,14 +33,13 @@ physics::CombineRule combine_rule(const std::string& name) {
     return physics::CombineRule::pair_table;
 }
 
-// The registry's default, for sets that a person or a file left incomplete.
+// The registry's default is for sets that a person or a file left incomplete.
 double number_or_standard(const AttributeSet& set, const char* name) {
     return set.number(name, std::get<double>(describe(name)->standard));
 }
 
-// The table speaks for things whose numbers are their material's. A number of a thing's own, from its category or a
-// person, would be lost in it: there friction is the geometric mean with the other's, and a bounciness of its own
-// counts.
+// The pair table holds for things with the numbers of their material. A number of a thing's own, from its category or a
+// person, would be lost in it: then friction is combined by the geometric mean, and the thing's own restitution counts.
 void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::Material& material) {
     const std::string name = set.word("surface_material", "");
     material.surface = taxonomy.surfaces().surface_of(name);
@@ -95,7 +94,7 @@ physics::ShapeDefinition placed(const Primitive& primitive, const Transform& pos
 Vec3 safe_size(const GeometryFacts& facts) { return form_of(facts, {0.5, 0.5, 0.5}).size; }
 Transform box_pose(Vec3 size) { return {{0, size.y / 2, 0}, {}}; }
 
-// The primitive as fitted, or, where a person asks for another than was fitted, the one around the bounding box.
+// The primitive as fitted, or the one around the bounding box where a person chose another than was fitted.
 physics::ShapeDefinition primitive_shape(const std::string& shape, const GeometryFacts& facts) {
     const bool fitted =
         facts.fitted_shape == shape && is_finite(facts.fitted_dimensions) && is_finite(facts.fitted_pose);
@@ -132,14 +131,14 @@ Result<physics::ShapeDefinition> decomposed_shape(const AttributeSet& attributes
     return physics::ShapeDefinition{std::move(compound)};
 }
 
-// With digits enough to tell what is just beyond a limit from the limit.
+// As many digits as distinguish a value just beyond a limit from the limit.
 std::string exact_number(double value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.7g", value);
     return buffer;
 }
 
-// The mass over the amount of what it fills (m³, m² or m), where some matter is as dense as that.
+// The mass over the amount that it fills (m³, m² or m), where some matter has that density.
 Result<double> spread(const AttributeSet& set, const char* name, double amount, const char* unit, const char* thing) {
     const AttributeDescription& range = *describe(name);
     const AttributeDescription& masses = *describe("mass");
@@ -249,7 +248,7 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     physics::Cloth cloth;
     cloth.triangles = sheet.triangles;
     cloth.area_density = *area_density;
-    // Layers further apart than the nodes are could not fold.
+    // Layers further apart than the distance of the nodes could not fold.
     const double edge = std::sqrt(area / static_cast<double>(sheet.triangles.size()) * 4 / std::sqrt(3));
     cloth.thickness = std::min(number_or_standard(attributes, "thickness"), edge);
     cloth.stretch_stiffness = number_or_standard(attributes, "stretch_stiffness");

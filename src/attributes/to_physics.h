@@ -17,7 +17,7 @@
 
 namespace embody::attributes {
 
-/// What the collision shape of a model may need of its geometry, fetched only if asked for.
+/// Geometry of a model for its collision shape, fetched only where it is needed.
 class ModelGeometry {
 public:
     virtual ~ModelGeometry() = default;
@@ -29,8 +29,8 @@ public:
 };
 
 /// A body's definition without pose, velocity and shape handle: kind, mass, material, damping … from the attributes.
-/// With a taxonomy, friction and restitution that are those of the surface material come from the pair table
-/// (Taxonomy::surfaces) where both things of a pair say pair_table; a number of the thing's own always counts itself.
+/// With a taxonomy, friction and restitution of the surface material come from the pair table (Taxonomy::surfaces)
+/// where both things of a pair are set to pair_table; a number of the thing's own always counts.
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes,
                                                      const Taxonomy* taxonomy = nullptr);
 
@@ -38,14 +38,14 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
 Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,
                                                        ModelGeometry& geometry);
 
-/// What all deformables have of the attributes, without nodes, matter and pose: material, gravity factor, groups. With
-/// a taxonomy as of body_from_attributes().
+/// The attributes of all deformables, without nodes, matter and pose: material, gravity factor, groups. The taxonomy is
+/// used as in body_from_attributes().
 physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes,
                                                          const Taxonomy* taxonomy = nullptr);
 
-/// A soft solid of these tetrahedra, without pose. Its density is the one that makes its mass that of the attributes,
-/// since tetrahedra miss what is thinner than they are. Poisson's ratio is taken within -0.9 … 0.495, and a yield
-/// stress of 0 as one of 1 Pa. The error says where the mass gives a density that nothing has.
+/// A soft solid of these tetrahedra, without pose. Its density makes its mass that of the attributes, since tetrahedra
+/// leave out parts that are thinner than they are. Poisson's ratio is clamped to -0.9 … 0.495, and a yield stress of 0
+/// is taken as 1 Pa. The error says where the mass needs a density that no matter has.
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
                                                                  const geometry::TetrahedralMesh& mesh,
                                                                  const Taxonomy* taxonomy = nullptr);
@@ -56,20 +56,19 @@ struct SheetMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< with area
 };
 
-/// Cloth of these triangles, without pose. Its area density is the one that makes its mass that of the attributes; a
-/// thickness above the length of an edge is taken as that. The error says where the mass gives a density that no cloth
-/// has.
+/// Cloth of these triangles, without pose. Its area density makes its mass that of the attributes; a thickness above
+/// the length of an edge is reduced to that length. The error says where the mass needs a density that no cloth has.
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy = nullptr);
 
 /// A rope along these nodes (m, each apart from the one before it), `diameter` (m) thick, without pose. Its linear
-/// density is the one that makes its mass that of the attributes, slack and all. Errors as of cloth.
+/// density makes its mass, slack included, that of the attributes. Errors as for cloth.
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
                                                            const std::vector<Vec3>& nodes, double diameter,
                                                            const Taxonomy* taxonomy = nullptr);
 
-/// A liquid without volume and velocity: what it is and the cells that it is solved on. Density is taken as 1 kg/m³ or
-/// more, viscosity and yield stress up to 10,000 Pa s and Pa.
+/// A liquid without volume and velocity: its material and cell size. Density is at least 1 kg/m³, viscosity and yield
+/// stress are at most 10,000 Pa s and Pa.
 physics::FluidDefinition fluid_from_attributes(const AttributeSet& attributes);
 
 }  // namespace embody::attributes

@@ -8,7 +8,7 @@
 namespace embody::attributes {
 namespace {
 
-// English, then what stands for the same in German, French, Spanish and Italian and is no English noun.
+// English separators, then the same words in German, French, Spanish and Italian that are no English nouns.
 constexpr auto separators = std::to_array<std::string_view>(
     {"with", "and",     "for",  "of",  "in",  "on",   "by",   "under", "from", "to",   "at", "over",
      "or",   "without", "plus", "mit", "und", "aus",  "ohne", "avec",  "sans", "et",   "en", "au",
@@ -27,7 +27,7 @@ char plain_letter(std::uint8_t second) {
     return index < plain.size() && plain[index] != ' ' ? plain[index] : '\0';
 }
 
-// Whether what is written so far ends in a single d or l.
+// Whether the text so far ends in a single d or l.
 bool is_elided(std::string_view text) {
     if (text.empty()) return false;
     const bool is_alone = text.size() == 1 || (text.size() > 1 && !is_letter(text[text.size() - 2]));

@@ -50,7 +50,7 @@ TEST(AttributeJson, FactsOfTheWrongTypeAreRefusedByName) {
               "facts.geometry.parts[1].shell");
 }
 
-// Of the registry's range, each end of it, and infinity where that is in range.
+// A number inside the registry's range, each end of it, and infinity where that is in range.
 double random_number(Random& random, const AttributeDescription& description) {
     const double low = description.low.value_or(-1e6), high = description.high.value_or(1e6);
     const auto choice = random.below(6);

@@ -18,7 +18,7 @@
 namespace embody::attributes {
 namespace {
 
-// A taxonomy of a few meanings, so that what is tested is the way through WordNet and not the table of categories.
+// A taxonomy of a few meanings, so that the path through WordNet is tested and not the table of categories.
 const Taxonomy& small_taxonomy() {
     static const std::unique_ptr<Taxonomy> taxonomy = [] {
         const auto folder = std::filesystem::temp_directory_path() / ("embody_classify_" + std::to_string(getpid()));
@@ -109,7 +109,7 @@ TEST(Classify, TheLastNounOfTheFirstPartIsWhatTheNameIsAbout) {
     EXPECT_EQ(category_of("wine decanter"), "container");
     EXPECT_EQ(category_of("guinea pig"), "rodent");
     EXPECT_EQ(category_of("trombone with seat"), "instrument");
-    // … what follows as an adjective, a material, a name or a separated part does not either.
+    // … nor does a following adjective, material, name or separated part.
     EXPECT_EQ(category_of("sofa classic"), "seat");
     EXPECT_EQ(category_of("sofa oak"), "seat");
     EXPECT_EQ(category_of("sofa Oslo"), "seat");
@@ -139,9 +139,9 @@ TEST(Classify, AmbiguityIsTold) {
     ASSERT_FALSE(crane.others.empty());
     EXPECT_LT(crane.confidence, 0.9 * std::pow(0.93, crane.steps));
     for (const Candidate& other : crane.others) EXPECT_LE(other.confidence, crane.confidence);
-    // A word that means one thing only leaves no doubt.
+    // A word with only one meaning leaves no doubt.
     EXPECT_TRUE(taken(unsized("tureen")).others.empty());
-    // A runner-up that is close stands in the source.
+    // The source names a runner-up that is close.
     ModelFacts facts = unsized("tureen");
     facts.tags = {"seat"};
     EXPECT_NE(taken(facts).source.find("; or dish: name says \"tureen\" → "), std::string::npos) << taken(facts).source;
@@ -153,7 +153,8 @@ TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWith
     facts.tags = {"dish"};
     EXPECT_EQ(taken(facts).category->name, "dish");
     EXPECT_NE(taken(facts).reckoning.find("name agrees (container)"), std::string::npos);
-    // A name may be a brand: "Trombone", filed under seats, is a seat; filed under instruments it is what it says.
+    // A name may be a brand: "Trombone" in the catalogue's category of seats is a seat; in that of instruments it is a
+    // trombone.
     facts.name = "Trombone";
     facts.tags = {"seat"};
     EXPECT_EQ(taken(facts).category->name, "seat");
@@ -164,7 +165,7 @@ TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWith
 TEST(Classify, PartsAreAskedLast) {
     ModelFacts facts = unsized("qwzx 17");
     facts.material_names = {"Oak", "Oak tureen"};
-    EXPECT_EQ(taken(facts).category->name, "object");  // what says a material says no thing
+    EXPECT_EQ(taken(facts).category->name, "object");  // the name of a material is no thing
     facts.material_names = {"Oak", "tureen_2"};
     EXPECT_EQ(taken(facts).category->name, "dish");
     EXPECT_LT(taken(facts).confidence, 0.3);
@@ -199,8 +200,8 @@ TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
     };
     const AttributeSet near = resolve(small_taxonomy(), named("dish"));
     const AttributeSet far = resolve(small_taxonomy(), named("tureen"));
-    // Independent spreads add like errors do; the entry's own is lopsided: [1, 2, 3] around 2, and the taxonomy's is
-    // 0.1.
+    // Independent spreads add as squares, like errors; the entry's own interval is asymmetric: [1, 2, 3] around 2, and
+    // the taxonomy's spread is 0.1.
     const double expected = std::hypot(std::log(2), 1.2816 * 0.1) + std::hypot(std::log(1.5), 1.2816 * 0.1);
     EXPECT_NEAR(std::log(ratio(near)), expected, 1e-9);
     EXPECT_GT(ratio(far), 1.2 * ratio(near));
@@ -216,7 +217,7 @@ TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
     EXPECT_EQ(category("Po\xC3\xAAle"), category("frying pan"));
     EXPECT_NE(classify(data, unsized("Cuill\xC3\xA8re")).level, AttributeLevel::standard);
     EXPECT_EQ(category("Stuhl"), category("chair"));
-    // What the thing is stands before the preposition, and at the end of a compound.
+    // The words before the preposition, and the end of a compound, name the thing.
     EXPECT_EQ(category("Table en verre"), category("table"));
     EXPECT_EQ(category("Chaise d'angle"), category("chair"));
     EXPECT_EQ(category("Tisch mit Lampe"), category("table"));
@@ -227,7 +228,7 @@ TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
     EXPECT_EQ(category("pomme de terre"), category("potato"));
     EXPECT_EQ(category("Zange"), category("pliers"));
     EXPECT_LT(classify(data, unsized("Kaffeetisch")).confidence, classify(data, unsized("Tisch")).confidence);
-    // What it is made of is said after "aus" and "en".
+    // The material follows "aus" and "en".
     EXPECT_EQ(resolve(shipped_taxonomy(), named("Table en verre")).word("surface_material", ""), "glass");
 }
 
@@ -246,12 +247,12 @@ TEST(Classify, AWordOfASubstanceIsTheSubstanceAndAModelOfItWhatItComesIn) {
     EXPECT_EQ(as_model.category->name, "container");
     EXPECT_EQ(as_model.source, "name says \"beer\"; a model of beer is usually \"container\"");
     EXPECT_EQ(kind_of(resolve(small_taxonomy(), model("beer", of_a_bottle))), PhysicalKind::rigid);
-    // Over WordNet too; and the word keeps its own meaning.
+    // The same for a word that only WordNet knows; and the word keeps its own meaning.
     EXPECT_EQ(found(unsized("lager")).category->name, "beer");
     EXPECT_EQ(found(model("lager", of_a_bottle)).category->name, "container");
     EXPECT_EQ(found(model("lager", of_a_bottle)).synset, "lager.n.02");
 
-    // In bulk it stays what it is: by its name, or by a stated size that no bottle has.
+    // In bulk it stays the substance: by its name, or by a stated size that no bottle has.
     for (const char* name : {"spilled beer", "beer, poured"})
         EXPECT_EQ(found(model(name, of_a_bottle)).category->name, "beer") << name;
     ModelFacts lake = model("beer", {9, 0.2, 9});
@@ -288,7 +289,7 @@ TEST(Classify, AnotherMeaningOfAWordOfTheTaxonomyIsToldWithIt) {
     EXPECT_NE(bat.source.find("it may also mean bat.n.01"), std::string::npos) << bat.source;
     const auto of_mouse = answers("mouse").second;
     EXPECT_TRUE(std::ranges::find(of_mouse, "mouse.n.01") != of_mouse.end());
-    // A word that means one thing only says no more.
+    // A word with only one meaning adds nothing.
     EXPECT_TRUE(answers("sofa").second.empty());
 }
 

@@ -60,7 +60,7 @@ TEST(FieldReader, NamesFileFieldAndWhatIsWrong) {
     EXPECT_EQ(words, std::vector<std::string>{"y"});
 }
 
-// One field, as the refusal tells of it after its place; empty where it was read.
+// The refusal of one field, without its path; empty where the field was read.
 std::string refusal(const std::string& field, const std::function<void(FieldReader&)>& read) {
     const std::string message = error_of(("{" + field + "}").c_str(), read), place = "a.json: list[2].";
     return message.starts_with(place) ? message.substr(place.size()) : message;
@@ -174,7 +174,7 @@ TEST(FieldReader, PlacesHaveAPositionAndARotation) {
     EXPECT_EQ(maybe, (Vec3{1, 2, 3}));
 }
 
-// What is wrong leaves the value as it was, and the first error stays.
+// A wrong field leaves the value unchanged, and the first error stays.
 TEST(FieldReader, KeepsTheFirstErrorOfAllThatShareOne) {
     const json document = json::parse(R"({"a": "x", "b": {"c": 1}})");
     std::optional<Error> error;

@@ -28,7 +28,8 @@ TEST(JsonText, NestingIsCountedOutsideOfTextsOnly) {
 }
 
 TEST(JsonText, WhatFollowsAByteZeroIsNotPassedOver) {
-    // The parser takes it for the end of the text; the search for repeated fields walked on, out of its own lists.
+    // The parser takes a NUL for the end of the text; the search for repeated fields read on, beyond the end of its own
+    // lists.
     using namespace std::string_literals;
     for (const std::string& text : {"{}\0]"s, "1\0\""s, "{\"a\": 1}\0\"\\"s, "[]\n\0"s, "\0"s, "[\"a\0b\"]"s})
         EXPECT_NE(message_of(text).find("has a byte 0"), std::string::npos) << message_of(text);

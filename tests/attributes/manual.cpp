@@ -124,7 +124,7 @@ TEST(WithManual, KindChangesShapeAndAttributes) {
     EXPECT_TRUE(check(fixed, crate.facts).empty());
     EXPECT_TRUE(check(cloth, crate.facts).empty());
 
-    // And back again: a static thing that a person sets free.
+    // The reverse: a person makes a static thing movable.
     const ModelFacts door = named("Door", {0.9, 2.05, 0.1});
     const AttributeSet freed =
         with_manual(resolve(shipped_taxonomy(), door), {manual("kind", to_value(PhysicalKind::rigid))}, door);

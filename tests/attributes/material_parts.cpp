@@ -14,7 +14,7 @@ geometry::SolidAndShell box_form(Vec3 size, Vec3 center) {
     form.solid.volume = size.x * size.y * size.z;
     form.solid.center = form.shell.center = center;
     form.solid.inertia = Mat3::diagonal({s.y + s.z, s.x + s.z, s.x + s.y}) * (form.solid.volume / 12);
-    // Six plates.
+    // A box of six plates.
     const double ab = size.x * size.y, bc = size.y * size.z, ca = size.z * size.x;
     form.shell.volume = 2 * (ab + bc + ca);
     const Vec3 second{(s.x * (ab + ca) / 6 + s.x * bc / 2), (s.y * (ab + bc) / 6 + s.y * ca / 2),
@@ -60,7 +60,7 @@ TEST(MaterialParts, EachIsOfWhatItsNameSays) {
     EXPECT_EQ(table.parts[1].usual_wall, 0) << "stone is solid";
     EXPECT_EQ(table.parts[2].material->name, "steel");
 
-    // A name that says nothing: what the whole is made of.
+    // A name that says no material: the part has the material of the whole.
     ModelFacts plain = facts;
     for (PartFacts& part : plain.geometry.parts) part.material = "Material.001";
     for (const MaterialPart& part : choose(plain).parts) EXPECT_EQ(part.material, choose(plain).surface.material);
@@ -95,7 +95,7 @@ TEST(MaterialParts, AHeavyFootDrawsTheCentreDown) {
     EXPECT_LT(center(set).y, 0.45);
     EXPECT_TRUE(set.find("center_of_mass")->source.starts_with("spread over its parts")) << set.find("inertia")->source;
 
-    // All of one material the plate on top weighs more against the foot.
+    // With one material for all parts, the plate on top has a larger fraction of the mass, compared with the foot.
     ModelFacts wooden = facts;
     for (PartFacts& part : wooden.geometry.parts) part.material = "oak";
     EXPECT_GT(center(resolve(shipped_taxonomy(), wooden)).y, center(set).y + 0.05);
@@ -107,7 +107,7 @@ TEST(MaterialParts, AHollowBoxTurnsLikeItsPlatesAndAFullOneLikeASolid) {
     facts.geometry.parts = {{"oak", box_form(size, {0, 0.5, 0})}};
     const Choices crate = choose(facts);
     const auto turning = [&](double mass) { return spread_over(crate.parts, mass)->inertia(1, 1) / mass; };
-    // Solid cube 1/6, thin cubic shell 5/18.
+    // The moment of inertia is 1/6 for a solid cube, 5/18 for a thin cubic shell.
     EXPECT_NEAR(turning(1), 5.0 / 18, 2e-3);
     EXPECT_NEAR(turning(300), (1.0 / 6 + 5.0 / 18) / 2, 1e-6) << "half full: 300 kg of the 600 of a wooden cube";
     EXPECT_FALSE(spread_over(crate.parts, 700)) << "full: the form of the whole says it all";
@@ -119,7 +119,7 @@ TEST(MaterialParts, ACoverIsFilledWithItsCore) {
     const Choices sofa = choose(facts);
     ASSERT_NE(sofa.parts[0].core, nullptr);
     EXPECT_EQ(sofa.parts[0].core->name, "foam");
-    // The mean of cover and filling is far below the cover's.
+    // The mean density of cover and filling is far below that of the cover.
     EXPECT_LT(substance_of(sofa.parts, sofa.surface).density.typical, 100);
 }
 

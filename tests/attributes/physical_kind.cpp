@@ -53,7 +53,7 @@ TEST(PhysicalKind, HasALetterOfItsOwnUnlessItIsOnlyDrawn) {
         ASSERT_FALSE(own.empty()) << to_text(kind);
         EXPECT_TRUE(letters.insert(own.front()).second) << to_text(kind);
     }
-    // What it has of others are letters of theirs.
+    // Every further letter of a kind is the own letter of another kind.
     EXPECT_EQ(std::string(every_kind.data()).size(), letters.size());
     for (const PhysicalKind kind : physical_kinds)
         for (const char letter : traits_of(kind).letters) EXPECT_TRUE(letters.contains(letter)) << to_text(kind);

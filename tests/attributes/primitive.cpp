@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A primitive is what its category says, where that changes its form.
+// A category may change the kind and the form of a primitive.
 #include <gtest/gtest.h>
 
 #include "attributes/assemble.h"
@@ -19,8 +19,8 @@ ModelFacts box(Vec3 size) {
 struct Stuff {
     const char* category;
     PhysicalKind kind;
-    const char* number;  ///< of its matter …
-    double low, high;    ///< … that must lie here
+    const char* number;  ///< attribute of its matter …
+    double low, high;    ///< … and the range that it must lie in
 };
 
 TEST(PrimitiveOfCategory, IsOfItsKindAndMatter) {
@@ -49,7 +49,7 @@ TEST(PrimitiveOfCategory, IsWhatItsShapeSaysWhereThatIsRigidOrNobodyKnowsTheWord
         EXPECT_FALSE(resolve_primitive(shipped_taxonomy(), category, box({0.4, 0.4, 0.4}))) << category;
 }
 
-// Of cloth by its area, of a rope by its length, of liquids and bulk by what they are.
+// Mass of cloth by its area, of a rope by its length, of liquids and bulk by their own density.
 TEST(PrimitiveOfCategory, WeighsByWhatItIsMadeOf) {
     const auto mass = [](const char* category, Vec3 size) {
         const ModelFacts facts = box(size);

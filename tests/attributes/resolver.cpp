@@ -56,7 +56,7 @@ struct Expected {
     PhysicalKind kind;
 };
 
-// Names of real catalogues, and why they are hard.
+// Names of real catalogues, and the reason why each is hard.
 constexpr Expected real_names[] = {
     {"Chair", "chair", "", PhysicalKind::rigid},
     {"Chair with cushion", "chair", "", PhysicalKind::rigid},     // the first part decides
@@ -184,7 +184,7 @@ TEST(Resolve, WhatHasAnUnusualSizeIsDrawnToWhatAnyThingOfThatSizeWeighs) {
     const AttributeEntry chair = mass_of("chair", usual), small = mass_of("chair", tiny), any = mass_of("xyzzy", tiny);
     EXPECT_EQ(chair.source.find("drawn"), std::string::npos);
     EXPECT_NE(small.source.find("any thing of this size, since its size is unusual"), std::string::npos);
-    // Between the category's law and that of any thing, and less certain.
+    // The mass is between the category's law and the law of any thing, and less certain.
     const double by_law = typical(chair) * std::pow(0.001, 0.8 * 0.85);
     EXPECT_GT(typical(small), std::min(by_law, typical(any)));
     EXPECT_LT(typical(small), std::max(by_law, typical(any)));
@@ -238,7 +238,7 @@ TEST(Resolve, HollowThingsAreDecomposedAlsoWhereAPrimitiveFitsTheirHull) {
     table.geometry.hull_concavity = 0.35;
     EXPECT_EQ(resolved(table).word("collision_shape", ""), "decomposition");
     EXPECT_NE(resolved(table).find("collision_shape")->source.find("350 mm"), std::string::npos);
-    // A groove that one does not see is none.
+    // A groove that one does not see counts as none.
     table.geometry.hull_concavity = 0.03;
     EXPECT_EQ(resolved(table).word("collision_shape", ""), "box");
     table.geometry.hull_concavity = 0.35;
@@ -284,7 +284,7 @@ TEST(Resolve, MaterialComesFromNameThenPartsThenCategory) {
     EXPECT_EQ(resolved(facts).word("surface_material", ""), "steel");
     facts.name = "Glass table";
     EXPECT_EQ(resolved(facts).word("surface_material", ""), "glass");
-    // What the thing is called does not say what it is made of.
+    // The words that name the thing do not say its material.
     EXPECT_NE(resolved(named("Paper towel holder")).word("surface_material", ""), "paper");
     EXPECT_EQ(resolved(named("Door with panes")).word("surface_material", ""), "wood");
 }

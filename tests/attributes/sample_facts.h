@@ -21,7 +21,7 @@ inline const Taxonomy& shipped_taxonomy() {
     return *taxonomy;
 }
 
-/// A model of which only name and size are known.
+/// A model whose name and size alone are known.
 inline ModelFacts named(std::string name, Vec3 size = {0.5, 0.5, 0.5}) {
     ModelFacts facts;
     facts.name = std::move(name);

@@ -94,13 +94,13 @@ TEST(Surfaces, OwnNumbersGoBeforeTheTable) {
     EXPECT_EQ(own->material.friction_dynamic, 0.11);
     EXPECT_EQ(own->material.restitution_combine, physics::CombineRule::pair_table);
 
-    // A bounciness of its own, which the category says.
+    // A restitution of the thing's own, set by its category.
     const AttributeSet ball = resolve(shipped_taxonomy(), named("medicine ball", {0.25, 0.25, 0.25}));
     const auto dead = body_from_attributes(ball, &shipped_taxonomy());
     EXPECT_EQ(dead->material.restitution_combine, physics::CombineRule::own);
     EXPECT_EQ(dead->material.restitution, ball.number("restitution", 0));
 
-    // A person's material brings that material's place in the table.
+    // A person's material also sets that material's surface in the pair table.
     set = with_manual(shipped_taxonomy(), resolve(shipped_taxonomy(), named("Wooden crate")),
                       {{"surface_material", std::string("steel"), {}, {}, "", AttributeLevel::manual}},
                       named("Wooden crate"));

@@ -25,7 +25,7 @@ std::string category(const std::string& name, const std::string& words, const st
            more + "}";
 }
 
-// Loads the two texts from a folder of their own; the message of the error, or "".
+// Loads the two texts from a folder of their own; returns the message of the error, or "".
 std::string load_error(const std::string& materials_text, const std::string& taxonomy_text) {
     const auto folder = std::filesystem::temp_directory_path() / ("embody_taxonomy_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "categories");
@@ -139,7 +139,7 @@ TEST(TaxonomyLoad, OnlyASubstanceIsModelledAsSomethingElseThatIsThere) {
 TEST(TaxonomyLoad, NumbersNeedASource) {
     const std::string sub =
         R"(, "subcategories": [{"name": "b", "words": [], "mass": [1, 2, 3], "at_size": [1, 1, 1]}])";
-    // The category's source does not vouch for the subcategory's numbers.
+    // The source of the category does not hold for the subcategory's numbers.
     EXPECT_EQ(load_error(category("a", R"(["a"])", sub)),
               "things.json: categories[1].subcategories[0].source: is missing");
 }
@@ -196,7 +196,7 @@ TEST(ShippedTaxonomy, EveryEntryGivesASetThatHoldsTogether) {
     EXPECT_GE(data.materials.size(), 25u);
     for (const CategoryData& category : data.categories) {
         EXPECT_FALSE(category.source.empty()) << category.name;
-        // A typical piece lies in the category's usual range, and no solid is denser than its material.
+        // A typical piece is in the category's usual range, and no solid is denser than its material.
         const Vec3 s = category.at_size;
         const double largest = std::max({s.x, s.y, s.z});
         EXPECT_GE(largest, category.usual_low) << category.name;

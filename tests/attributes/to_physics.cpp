@@ -128,7 +128,7 @@ TEST(ToPhysics, ADecompositionIsACompoundOfHullsWithinItsLimits) {
     EXPECT_TRUE(physics::validate(*shape).ok());
     EXPECT_EQ(geometry.asked_error, 0.02);
 
-    // One part is the hull of all.
+    // With one part the hull is that of all points.
     set.put({"max_hulls", 1.0, {}, {}, "test", AttributeLevel::manual});
     const auto one = shape_from_attributes(set, facts.geometry, geometry);
     ASSERT_TRUE(one.ok());
@@ -211,7 +211,7 @@ TEST(ToPhysics, SoftAttributesArriveWithinWhatTheSolverTakes) {
     const auto too_dense = soft_solid_from_attributes(set, unit_tetrahedron());
     ASSERT_FALSE(too_dense.ok());
     EXPECT_EQ(too_dense.error().where, "mass");
-    // Just beyond the most that matter weighs: the digits tell.
+    // Just above the largest density of matter: the message has enough digits to show the difference.
     put("mass", 22601.0 / 6);
     EXPECT_NE(soft_solid_from_attributes(set, unit_tetrahedron()).error().message().find("22601"), std::string::npos);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How well words do that the taxonomy does not have: every entry is hidden in turn, and its first word has to find its
-// way through WordNet to what is left. No measured masses are needed: the entry's own is the truth.
+// Results on words that the taxonomy does not have: every entry is hidden in turn, and its first word must lead through
+// WordNet to an entry that is left. No measured masses are needed: the hidden entry's own mass is the truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ struct Score {
         const double more = 1.2816 * spread_of_steps(what.steps);
         covered += miss < 0 ? -miss <= std::hypot(high, more) : miss <= std::hypot(low, more);
 
-        // Right is a meaning that is the entry's own or its kin, or a category above it.
+        // A reading is right if its meaning is the hidden entry's own or related to it, or a category above it.
         const auto meant = rest.nouns->find_synset(hidden.synset);
         const auto read = rest.nouns->find_synset(what.synset);
         const auto above = rest.nouns->find_synset(what.category->synset);
@@ -68,7 +68,7 @@ struct Score {
     }
 };
 
-// Of entries whose word only WordNet can tell once they are hidden.
+// Score over entries whose word only WordNet knows once they are hidden.
 Score score_of_hidden_entries(bool family, std::size_t every) {
     const Taxonomy::Data& data = shipped_taxonomy().data();
     Score score;
@@ -90,10 +90,11 @@ Score score_of_hidden_entries(bool family, std::size_t every) {
 void expect_good(const Score& score, double error) {
     EXPECT_GT(score.words, 200);
     EXPECT_LT(score.error / score.words, error);
-    // The interval holds 80 % of things; here the truth is the middle of a category, so somewhat more.
+    // The interval holds 80 % of things; here the truth is the typical value of a category, so that the fraction is
+    // larger.
     EXPECT_GT(score.covered, 0.75 * score.words);
     EXPECT_LT(score.covered, 0.92 * score.words);
-    // The confidence is a probability, told rather too low than too high.
+    // The confidence is a probability, and rather too low than too high.
     EXPECT_GT(score.right, score.confidence);
     EXPECT_LT(score.right, score.confidence + 0.25 * score.judged);
 }
@@ -102,7 +103,7 @@ TEST(UnseenWords, FindTheirMassWithinAFactorOfTwoOnAverage) { expect_good(score_
 TEST(UnseenWords, AlsoWhereTheirWholeFamilyIsUnseen) { expect_good(score_of_hidden_entries(true, 3), 0.95); }
 
 TEST(UnseenWords, ClassifyingIsFreeOfLuck) {
-    // The same words, asked twice and in another taxonomy object, get the same answer to the last bit.
+    // The same words, asked twice and in another taxonomy object, get bitwise the same answer.
     const Taxonomy::Data& data = shipped_taxonomy().data();
     const Taxonomy::Data copy = data;
     for (const char* name :
@@ -129,13 +130,13 @@ TEST(UnseenWords, EveryNounGivesASetThatHoldsTogether) {
         above_default += set.find("category")->level > AttributeLevel::standard;
         ++asked;
     }
-    // About three in five nouns mean a thing.
+    // About three in five nouns mean a physical thing.
     EXPECT_GT(above_default, asked / 2);
 }
 
 TEST(GeneralEntries, HoldWhatLiesBelowThem) {
-    // An inner node with ten entries below it gives most of them a mass within its interval, and the middle is no
-    // more than a factor 2.5 off.
+    // An inner node with at least ten entries below it: most of them have a mass within its interval, and the typical
+    // mass is at most a factor 2.5 off.
     const Taxonomy::Data& data = shipped_taxonomy().data();
     int checked = 0;
     for (const CategoryData& general : data.categories) {
@@ -146,7 +147,8 @@ TEST(GeneralEntries, HoldWhatLiesBelowThem) {
         for (const CategoryData& entry : data.categories) {
             const auto meaning = data.nouns->find_synset(entry.synset);
             if (is_general(entry) || !meaning || !is_kind_of(*data.nouns, *meaning, *node)) continue;
-            if (entry.model_entry) continue;  // a model of beer is a bottle: the substance's own mass is no model's
+            if (entry.model_entry)
+                continue;  // a model of beer is a bottle: the substance's own mass is not that of a model
             const double miss = std::log(entry.mass.typical / mass_at(general, entry.at_size));
             ++below;
             bias += miss;

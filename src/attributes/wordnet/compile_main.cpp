@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs while building: WordNet's text files to the table that the program reads.
+// Build step: compiles WordNet's text files to the table that the program reads.
 #include <cstdio>
 
 #include "attributes/wordnet/noun_table.h"

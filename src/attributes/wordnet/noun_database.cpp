@@ -48,7 +48,7 @@ Error broken_line(const fs::path& file, std::size_t line) {
     return {file.string() + ": line " + std::to_string(line), "is not as WordNet 3.0 writes it", remedy};
 }
 
-// Calls `read` with each line that is no part of the licence at the top (those begin with a space).
+// Calls `read` with each line after the licence at the top, whose lines begin with a space.
 template <class Read>
 Result<void> read_lines(const fs::path& file, Read&& read) {
     std::ifstream stream(file);

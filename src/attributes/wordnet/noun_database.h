@@ -11,16 +11,16 @@
 
 namespace embody::attributes::wordnet {
 
-/// The nouns of WordNet as its text files tell them, indices in place of file offsets.
+/// The nouns of WordNet as in its text files, with indices in place of file offsets.
 struct NounDatabase {
     struct Sense {
         std::uint32_t synset = 0;
-        std::uint32_t tag_count = 0;  ///< how often this meaning was met in the tagged texts (SemCor)
+        std::uint32_t tag_count = 0;  ///< how often the tagged texts (SemCor) use this meaning
     };
     struct Lemma {
         std::string text;  ///< lower case, words joined by '_', such as "coffee_table"
         bool mostly_adjective =
-            false;  ///< the tagged texts have it as an adjective at least as often as as a noun: "modern"
+            false;  ///< the tagged texts use it as an adjective at least as often as as a noun: "modern"
         std::vector<Sense> senses;  ///< the usual one first
     };
     struct Synset {
@@ -34,7 +34,7 @@ struct NounDatabase {
     std::vector<std::pair<std::string, std::string>> exceptions;  ///< inflected form, base form: "oxen", "ox"
 };
 
-/// Reads index.noun, data.noun, noun.exc, and where they are there cntlist.rev and index.adj (without them there are no
+/// Reads index.noun, data.noun, noun.exc, and cntlist.rev and index.adj if they exist (without them there are no
 /// counts, and no word counts as an adjective). The error names file and line.
 Result<NounDatabase> read_noun_database(const std::filesystem::path& folder);
 

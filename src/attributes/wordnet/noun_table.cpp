@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* build_again = "build again: the target embody_wordnet_table writes it from Debian's wordnet-base";
 
-// Index of the text among ascending texts, whose beginnings are given.
+// Index of a text in an ascending list; `text_of` returns the text of an index.
 template <class TextOf>
 std::optional<std::uint32_t> find_text(std::uint32_t count, std::string_view wanted, TextOf&& text_of) {
     std::uint32_t low = 0, high = count;
@@ -62,7 +62,7 @@ Result<NounTable> NounTable::load(const std::filesystem::path& file) {
     NounTable table;
     table.words_ = std::move(*words);
 
-    // Nothing is believed before the checksum says that the file is as it was written.
+    // Nothing is read before the checksum shows that the file is complete and unchanged.
     TableHeader header{};
     if (table.words_.size() < header_words) return Error{file.string(), "is cut off", build_again};
     std::memcpy(&header, table.words_.data(), sizeof header);
@@ -138,7 +138,7 @@ std::optional<LemmaIndex> NounTable::find_inflected(std::string_view text) const
         }
     }
     for (const auto& [ending, instead] : detachments) {
-        // "ss" is no plural, and what is left must still be a word.
+        // "ss" is no plural, and the rest must still be a word.
         if (!text.ends_with(ending) || text.ends_with("ss") || text.size() < ending.size() + 2) continue;
         const std::string base = std::string(text.substr(0, text.size() - ending.size())) + std::string(instead);
         if (const auto lemma = find_lemma(base)) return lemma;

@@ -24,7 +24,7 @@ struct NounSense {
     std::uint32_t tag_count = 0;  ///< how often tagged texts mean this
 };
 
-/// WordNet's lexicographer files, as far as we ask for them (lexnames(5WN)).
+/// WordNet's lexicographer files that we use (lexnames(5WN)).
 enum class Topic : std::uint8_t {
     tops = 3,
     act = 4,
@@ -45,10 +45,10 @@ public:
     /// The error names the file and the remedy; a file that is cut, changed or of another version is refused.
     static Result<NounTable> load(const std::filesystem::path& file);
 
-    /// The lemma written just so (lower case, words joined by '_'), or whose hyphens, dots and apostrophes were left
-    /// out ("t_shirt").
+    /// The lemma with exactly this spelling (lower case, words joined by '_'), or without its hyphens, dots and
+    /// apostrophes ("t_shirt").
     [[nodiscard]] std::optional<LemmaIndex> find_lemma(std::string_view text) const;
-    /// As find_lemma; then base forms of an inflected last word: "oxen", "bread_knives", "boxes".
+    /// As find_lemma; then tries base forms of an inflected last word: "oxen", "bread_knives", "boxes".
     [[nodiscard]] std::optional<LemmaIndex> find_inflected(std::string_view text) const;
     /// "chair.n.01": first sense of the lemma "chair".
     [[nodiscard]] std::optional<SynsetIndex> find_synset(std::string_view name) const;
@@ -56,15 +56,15 @@ public:
     [[nodiscard]] std::string_view text(LemmaIndex lemma) const;
     /// The usual meaning first.
     [[nodiscard]] std::span<const NounSense> senses(LemmaIndex lemma) const;
-    /// Tagged texts have the word as an adjective at least as often as as a noun.
+    /// Whether the tagged texts use the word as an adjective at least as often as as a noun.
     [[nodiscard]] bool is_mostly_adjective(LemmaIndex lemma) const;
 
-    /// First lemma, n, and the number of that lemma's sense: "chair.n.01".
+    /// Name of a synset: first lemma, n, and the number of that lemma's sense: "chair.n.01".
     [[nodiscard]] std::string name(SynsetIndex synset) const;
     [[nodiscard]] std::span<const SynsetIndex> hypernyms(SynsetIndex synset) const;
-    /// How many synsets are this or of this kind, itself included: small where the meaning is specific.
+    /// Number of synsets that are this or a kind of it, itself included: small where the meaning is specific.
     [[nodiscard]] std::uint32_t count_of_kind(SynsetIndex synset) const;
-    [[nodiscard]] bool is_physical(SynsetIndex synset) const;  ///< a kind of physical_entity.n.01, or made
+    [[nodiscard]] bool is_physical(SynsetIndex synset) const;  ///< a kind of physical_entity.n.01, or an artifact
     [[nodiscard]] bool is_instance(SynsetIndex synset) const;  ///< a named individual
     [[nodiscard]] Topic topic(SynsetIndex synset) const;
 

@@ -27,7 +27,8 @@ constexpr std::uint32_t table_version = 1;
 constexpr std::size_t header_words = sizeof(TableHeader) / sizeof(std::uint32_t);
 constexpr std::uint32_t adjective_bit = 0x80000000U;
 
-/// Of a synset: number of the sense in its name (bits 0 to 7), lexicographer file (8 to 15), then the two below.
+/// Bits of a synset's mark: number of the sense in its name (bits 0 to 7), lexicographer file (8 to 15), then the two
+/// below.
 constexpr std::uint32_t physical_bit = 1U << 16;
 constexpr std::uint32_t instance_bit = 1U << 17;
 

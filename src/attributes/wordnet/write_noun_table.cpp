@@ -17,7 +17,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-// How a name's words are joined: "t-shirt" is found as "t_shirt", "jew's_harp" as "jews_harp".
+// Spelling without hyphens, dots and apostrophes: "t-shirt" is found as "t_shirt", "jew's_harp" as "jews_harp".
 std::string plain_spelling(std::string_view text) {
     std::string plain;
     for (const char c : text) {
@@ -27,7 +27,7 @@ std::string plain_spelling(std::string_view text) {
     return plain;
 }
 
-// Lemmas with their plain spellings beside them, where no other lemma is written so.
+// The lemmas and their plain spellings, where no other lemma has that spelling.
 std::vector<NounDatabase::Lemma> with_plain_spellings(const std::vector<NounDatabase::Lemma>& lemmas) {
     std::map<std::string, const NounDatabase::Lemma*> added;
     const auto known = [&](const std::string& text) {
@@ -46,8 +46,8 @@ std::vector<NounDatabase::Lemma> with_plain_spellings(const std::vector<NounData
     return all;
 }
 
-// All kinds of each synset counted once, also where two ways lead to it; and what is a kind of physical_entity. Some
-// made things are not, since WordNet sees a place or a sign in them: bleachers, a buoy.
+// Number of kinds of each synset, counted once where two paths lead to it; and whether a synset is a kind of
+// physical_entity. Some artifacts are not, since WordNet puts them under places or signs: bleachers, a buoy.
 struct Kinds {
     Numbers counts;
     std::vector<bool> is_physical;
@@ -139,7 +139,7 @@ private:
         append(kinds_.counts);
     }
 
-    // "chair.n.01": the synset's first word, and which of that word's senses it is.
+    // "chair.n.01": the synset's first word, and the number of that word's sense.
     Result<void> add_names() {
         Numbers names, marks;
         for (std::uint32_t i = 0; i < nouns_.synsets.size(); ++i) {
@@ -163,7 +163,7 @@ private:
         return {};
     }
 
-    // Those whose base form is a lemma, ascending by the inflected form.
+    // The exceptions whose base form is a lemma, ascending by the inflected form.
     void add_exceptions() {
         std::map<std::string, std::uint32_t> bases;
         for (const auto& [inflected, base] : nouns_.exceptions) {

@@ -23,13 +23,13 @@ const NounTable& nouns() {
     return table;
 }
 
-// The text that the inflected word is found as, or "".
+// The base form under which the inflected word is found, or "".
 std::string base_of(std::string_view word) {
     const auto lemma = nouns().find_inflected(word);
     return lemma ? std::string(nouns().text(*lemma)) : "";
 }
 
-// A folder of its own that goes with the test.
+// A folder that is deleted after the test.
 struct Folder {
     std::filesystem::path path =
         std::filesystem::temp_directory_path() / ("embody_wordnet_" + std::to_string(getpid()));
@@ -65,7 +65,7 @@ TEST(NounTableFile, MissingCutOrChangedIsRefusedWithARemedy) {
     changed = whole;
     changed[whole.size() / 2] = static_cast<char>(changed[whole.size() / 2] ^ 1);
     EXPECT_NE(why(changed).find("was changed"), std::string::npos);
-    // Counts so great that their sum would not fit.
+    // Counts so large that their sum would overflow.
     changed = whole;
     std::fill(changed.begin() + 8, changed.begin() + 32, '\xff');
     EXPECT_NE(why(changed).find("checksum"), std::string::npos);
@@ -92,7 +92,7 @@ TEST(NounDatabase, BrokenTextFilesAreRefusedByFileAndLine) {
     folder.write("noun.exc", "thingies thing\n");
     EXPECT_EQ(why(), "");
 
-    // What is read can be written and read again; here nothing is physical.
+    // A database that was read can be written and read again; here nothing is physical.
     const auto read = read_noun_database(folder.path);
     ASSERT_TRUE(write_noun_table(*read, folder.path / "small.table").ok());
     EXPECT_FALSE(write_noun_table(*read, folder.path / "none" / "small.table").ok());
@@ -107,7 +107,7 @@ TEST(NounDatabase, BrokenTextFilesAreRefusedByFileAndLine) {
 }
 
 TEST(NounTable, HoldsAllOfWordNet) {
-    // The statistics that WordNet 3.0 states of itself, wnstats(7WN): 117,798 nouns, 82,115 synsets.
+    // The statistics that WordNet 3.0 publishes about itself, wnstats(7WN): 117,798 nouns, 82,115 synsets.
     EXPECT_EQ(nouns().synset_count(), 82115u);
     EXPECT_GE(nouns().lemma_count(), 117798u);
     std::uint32_t wrong_names = 0;
