@@ -23,7 +23,7 @@ constexpr double drop_height = 0.1;  // m
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* floor_material = "concrete";
 
-// A stage of one model on a wide slab.
+// A simulation with one model on a wide slab.
 struct Stage {
     std::unique_ptr<scene::Simulation> simulation;
     physics::BodyHandle body;
@@ -59,8 +59,8 @@ Result<Stage> stage_of(catalog::Catalog& catalog, const std::string& key, double
     return Stage{std::move(*simulation), body};
 }
 
-// Friction and restitution of the model on the floor as the attributes have it: of the pair where both are the
-// materials' own, else by the rules that stand in.
+// Expected friction and restitution of the model on the floor: from the pair table where both values are the materials'
+// own, else from the fallback rules.
 struct OnFloor {
     double friction = 0, restitution = 0;
 };
@@ -70,7 +70,7 @@ OnFloor on_floor(const attributes::Taxonomy& taxonomy, const AttributeSet& model
         taxonomy.surfaces().pair(model.word("surface_material", ""), floor.word("surface_material", ""));
     const attributes::AttributeEntry* friction = model.find("friction_dynamic");
     const attributes::AttributeEntry* bounce = model.find("restitution");
-    // The resolver names the material first in the source of what comes from it.
+    // The resolver's source of a value from the material begins with the material's name.
     const auto is_materials = [&](const attributes::AttributeEntry* entry) {
         return entry == nullptr || entry->source.starts_with(model.word("surface_material", "") + " (");
     };
@@ -84,10 +84,12 @@ OnFloor on_floor(const attributes::Taxonomy& taxonomy, const AttributeSet& model
     return result;
 }
 
-// Lies flat at its usual pose, so that it slides instead of rolling and comes down on all its feet at once.
+// Whether the model lies flat at its usual pose, so that it slides instead of rolling and lands on all its feet at
+// once.
 bool is_upright(const Stage& stage) { return stage.tilt() < 1; }
 
-// Ends that move faster than this up and down: it rocks, and numbers of a sliding or bouncing block say nothing.
+// Vertical speed of the ends above which the model rocks: then the formulas of a sliding or bouncing block do not
+// apply.
 constexpr double rocking = 0.05;  // m/s
 
 bool rocks(const Stage& stage, double extent) {
@@ -95,7 +97,7 @@ bool rocks(const Stage& stage, double extent) {
     return std::hypot(spin.x, spin.z) * extent > rocking;
 }
 
-// Friction and the drag of the air, v' = -μ g - k v² with k = ρ c A/2m, stop it after ln(1 + k v²/μ g)/2k.
+// Friction and air drag, v' = -μ g - k v² with k = ρ c A/2m, stop it after a distance of ln(1 + k v²/μ g)/2k.
 std::optional<Compared> slide_of(const Stage& stage, double extent, double friction, const AttributeSet& attributes) {
     const Vec3 start = stage.center();
     const double seconds = push_speed / (friction * gravity) + 1;
@@ -111,7 +113,7 @@ std::optional<Compared> slide_of(const Stage& stage, double extent, double frict
     return Compared{k > 0 ? std::log1p(2 * k * energy) / (2 * k) : energy, std::hypot(way.x, way.z)};
 }
 
-// From how high it comes back: `ground` is the height of its centre where it stands.
+// Restitution from the height of the rebound: `ground` is the height of its centre at rest.
 std::optional<Compared> rebound_of(const Stage& stage, double extent, double ground, double restitution) {
     const double fall = stage.center().y - ground;
     double top = ground;
@@ -129,7 +131,7 @@ std::optional<Compared> rebound_of(const Stage& stage, double extent, double gro
 
 bool is_round(const std::string& shape) { return shape == "sphere" || shape == "capsule" || shape == "cylinder"; }
 
-// Of all that can move: what bends or pours is not one body.
+// Mass of everything that can move: things that bend or pour are not one body.
 double moving_mass(const physics::World& world) {
     double sum = 0;
     for (const physics::DeformableHandle deformable : world.deformables()) sum += world.mass(deformable);
@@ -144,7 +146,7 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     Behaviour behaviour{.key = model.key, .name = model.name, .category = found_category(attributes)};
     behaviour.is_furniture = attributes.word("placement", "") == "floor";
 
-    // As it stands.
+    // At rest.
     const auto standing = stage_of(catalog, model.key, 0, {});
     if (!standing) return standing.error();
     behaviour.mass = {attributes.number("mass", 0), moving_mass(standing->world())};
@@ -159,7 +161,7 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     behaviour.speed = length(standing->world().linear_velocity(standing->body));
     if (!is_upright(*standing) || is_round(attributes.word("collision_shape", ""))) return behaviour;
 
-    // Pushed, and dropped.
+    // One model is pushed, another dropped.
     const double extent = std::max({model.size.x, model.size.y, model.size.z});
     const auto floor = standing->simulation->attributes(1);
     if (!floor) return floor.error();
@@ -167,7 +169,8 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     const auto pushed = stage_of(catalog, model.key, 0, {push_speed, 0, 0});
     if (!pushed) return pushed.error();
     behaviour.slide = slide_of(*pushed, extent, expected.friction, attributes);
-    // A bottom that is not flat meets the floor before it stands: then the height of its bounce says little.
+    // A bottom that is not flat touches the floor before the model is at rest: then the height of the rebound says
+    // little.
     if (std::abs(standing->center().y - placed) > 2e-4 || standing->tilt() > 0.05) return behaviour;
     const auto dropped = stage_of(catalog, model.key, drop_height, {});
     if (!dropped) return dropped.error();

@@ -17,7 +17,8 @@ double share(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// The model's kind if the catalogue had said nothing. Doors and windows are the catalogue's own word for not moving.
+// The model's kind without the catalogue's flag. For doors and windows the catalogue's own category says that they do
+// not move.
 void compare_movable(const attributes::Taxonomy& taxonomy, ModelFacts facts, const std::string& key,
                      CatalogueEvaluation& evaluation) {
     if (!facts.movable) return;

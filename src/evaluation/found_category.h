@@ -7,7 +7,7 @@
 
 namespace embody::evaluation {
 
-/// What a set says that the thing is: its subcategory, else its category.
+/// The category that a set names: its subcategory, else its category.
 inline std::string found_category(const attributes::AttributeSet& set) {
     const std::string subcategory = set.word("subcategory", "");
     return subcategory.empty() ? set.word("category", "") : subcategory;

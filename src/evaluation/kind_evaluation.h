@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Physical kinds beside labels that others gave to words.
+// Compares physical kinds with labels that others gave to words.
 #pragma once
 
 #include <cstddef>
@@ -16,21 +16,21 @@
 
 namespace embody::evaluation {
 
-/// A thing whose physical kind somebody knows.
+/// A thing with a known physical kind.
 struct LabelledWord {
     std::string word;                             ///< its usual name
     std::vector<attributes::PhysicalKind> kinds;  ///< any of these is right
 };
 
-/// Reads a table with the columns words (several separated by ";": the first is taken) and kinds (likewise: all are
-/// right), kinds of the registry. Refuses unknown kinds and a table without rows.
+/// Reads a table with the columns words (several separated by ";": the first is taken) and kinds (several separated by
+/// ";": each is right), kinds of the registry. Refuses unknown kinds and a table without rows.
 Result<std::vector<LabelledWord>> read_labelled_words(const std::filesystem::path& file);
 
 /// A word whose kind is wrong.
 struct KindMistake {
     LabelledWord label;
-    attributes::PhysicalKind kind = attributes::PhysicalKind::rigid;  ///< what we think
-    std::string category;                                             ///< why
+    attributes::PhysicalKind kind = attributes::PhysicalKind::rigid;  ///< our answer
+    std::string category;                                             ///< its reason
 };
 
 struct KindEvaluation {
@@ -39,10 +39,10 @@ struct KindEvaluation {
     std::map<attributes::PhysicalKind, std::pair<std::size_t, std::size_t>>
         by_label;  ///< first right kind: words, right ones
 
-    [[nodiscard]] double accuracy() const;  ///< share of the words
+    [[nodiscard]] double accuracy() const;  ///< fraction of the words
 };
 
-/// The kind of each word as the name of a model of which nothing else is known.
+/// The kind of each word, used as the name of a model without other facts.
 KindEvaluation evaluate_kinds(const attributes::Taxonomy& taxonomy, const std::vector<LabelledWord>& words);
 
 }  // namespace embody::evaluation

@@ -17,7 +17,7 @@ using attributes::AttributeSet;
 
 using Predictions = std::vector<const MassPrediction*>;
 
-// Percentile bootstrap: the mean of as many objects drawn again and again with replacement.
+// Percentile bootstrap: means of samples of the same size, drawn with replacement.
 void put_bootstrap_interval(const Predictions& predictions, MassFigures& figures) {
     constexpr int samples = 2000;
     std::mt19937_64 random(1);
@@ -62,7 +62,7 @@ std::map<std::string, MassFigures> figures_by(const std::vector<MassPrediction>&
     return figures;
 }
 
-// Taxonomies without a category, made when first asked for.
+// Taxonomies without one category each, made on first use.
 class Rest {
 public:
     explicit Rest(const attributes::Taxonomy& taxonomy) : taxonomy_(taxonomy) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How far predicted masses are from those of real objects.
+// Compares predicted masses with those of real objects.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace embody::evaluation {
 struct MassPrediction {
     MeasuredObject object;
     double mass = 0, low = 0, high = 0;      ///< kg; low to high is the 80 % interval
-    std::string category;                    ///< subcategory, else category, that was found
+    std::string category;                    ///< subcategory, else category, of the answer
     std::string level;                       ///< level_name() of the category
     [[nodiscard]] double log_error() const;  ///< ln(predicted / real)
 };
@@ -27,27 +27,27 @@ struct MassPrediction {
 struct MassFigures {
     std::size_t objects = 0;
     double alde = 0;      ///< mean |ln m̂/m| (absolute log difference error)
-    double alde_low = 0;  ///< 95 % of bootstrap samples of the objects have an ALDE between these two
+    double alde_low = 0;  ///< 95 % of bootstrap samples of the objects have an ALDE in this range
     double alde_high = 0;
     double bias = 0;             ///< mean ln m̂/m: above 0 is too heavy
     double mnre = 0;             ///< mean min(m̂/m, m/m̂) (minimum ratio error; higher is better)
-    double within_factor_2 = 0;  ///< share
-    double coverage_80 = 0;      ///< share of real masses inside the predicted 80 % interval
+    double within_factor_2 = 0;  ///< fraction
+    double coverage_80 = 0;      ///< fraction of real masses inside the predicted 80 % interval
 };
 
 struct MassEvaluation {
     MassFigures all;
     std::map<std::string, MassFigures> by_source, by_level;
     std::vector<MassPrediction> predictions;  ///< worst first
-    std::vector<std::string> without_mass;  ///< ids of objects taken for something that has none (a liquid, a picture)
+    std::vector<std::string>
+        without_mass;  ///< ids of objects that were classified as something without mass (a liquid, a picture)
 };
 
-/// Whether the taxonomy may know what an object is, or its word counts as never seen: then the category that was found,
-/// with its subcategories and all their words, is hidden, and the mass is predicted by what is left (other words of the
-/// name, WordNet's hypernyms).
+/// Whether the taxonomy may know the object's word. `unseen`: the category of the answer, with its subcategories and
+/// all their words, is hidden, and the mass is predicted by the rest (other words of the name, WordNet's hypernyms).
 enum class Words : std::uint8_t { known, unseen };
 
-/// Predicts each object's mass from what `told` allows and compares. Deterministic.
+/// Predicts each object's mass from the facts that `told` allows, and compares. Deterministic.
 MassEvaluation evaluate_mass(const attributes::Taxonomy& taxonomy, const std::vector<MeasuredObject>& objects,
                              Told told, Words words = Words::known);
 

@@ -12,7 +12,7 @@
 
 namespace embody::evaluation {
 
-/// A real object that somebody put on a scale.
+/// A real object that somebody weighed.
 struct MeasuredObject {
     std::string id;                     ///< "source:number"
     std::string name;                   ///< as a catalogue would call it
@@ -21,19 +21,19 @@ struct MeasuredObject {
     std::optional<double> mesh_volume;  ///< inside its scanned surface, m³
     double mass = 0;                    ///< kg
 
-    /// What stands before the colon of the id.
+    /// The part of the id before the colon.
     [[nodiscard]] std::string source() const;
 };
 
-/// Reads a table with the columns id, name, category, dim_x_m, dim_y_m, dim_z_m, mass_kg and, where there is one,
-/// mesh_volume_m3. Refuses what is not a positive number, and a table without rows.
+/// Reads a table with the columns id, name, category, dim_x_m, dim_y_m, dim_z_m, mass_kg and optionally mesh_volume_m3.
+/// Refuses numbers that are not positive, and a table without rows.
 Result<std::vector<MeasuredObject>> read_measured_objects(const std::filesystem::path& file);
 
-/// What of a row the predictor is told: never its mass.
+/// The facts of a row that the predictor sees: never its mass.
 enum class Told : std::uint8_t { everything, name, category };
 
 /// The row as the facts of a model: name, category words as tags, stated size, the mesh's volume as that of a closed
-/// surface. Told only its category, a thing's name is its first category word.
+/// surface. With `Told::category` the name is the first category word.
 attributes::ModelFacts facts_of(const MeasuredObject& object, Told told);
 
 }  // namespace embody::evaluation

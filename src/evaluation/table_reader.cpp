@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The only file that sees the CSV library, which reports by exceptions: they end here.
+// The only file that includes the CSV library, which reports errors by exceptions: they are caught here.
 #include "evaluation/table_reader.h"
 
 #define CSV_IO_NO_THREAD
@@ -16,7 +16,7 @@ using Reader = io::CSVReader<most_columns, io::trim_chars<' ', '\t'>, io::double
 
 template <std::size_t... I>
 void read_header(Reader& reader, const ColumnNames& names, std::index_sequence<I...>) {
-    // The library wants a name for every column; one that no table has stands for those that nobody asks for.
+    // The library needs a name for every column; unused columns get a name that no table has.
     const auto name_of = [&](std::size_t i) { return names[i].empty() ? "\x01" + std::to_string(i) : names[i]; };
     reader.read_header(io::ignore_extra_column | io::ignore_missing_column, name_of(I)...);
 }

@@ -11,7 +11,7 @@
 
 namespace embody::evaluation {
 
-/// Most columns that a table of labels is asked for.
+/// Maximum number of columns that a reader asks for.
 inline constexpr std::size_t most_columns = 10;
 
 /// Columns of a table to read, in the order in which a row's cells are handed over; unused names are empty.
@@ -24,12 +24,12 @@ struct TableRow {
 };
 
 /// Reads a comma-separated file with a header (RFC 4180 quotes on one line, UTF-8, further columns are ignored) and
-/// hands over row after row, until `take` returns an error. Errors name the file and the line; the first
+/// calls `take` with row after row until it returns an error. Errors name the file and the line; the first
 /// `required_columns` of `names` must be in the header.
 Result<void> read_table(const std::filesystem::path& file, const ColumnNames& names, std::size_t required_columns,
                         const std::function<Result<void>(const TableRow&)>& take);
 
-/// The parts of a cell that holds several, separated by ";", without spaces around them; empty parts are left out.
+/// The parts of a cell that are separated by ";", without spaces around them; empty parts are left out.
 std::vector<std::string> split_cell(const std::string& cell);
 
 }  // namespace embody::evaluation
