@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each attribute of the registry goes all the way: set by a command, shown, kept by a file, taken back. Nothing here
-// names an attribute, so a new one is tried without a line.
+// Each attribute of the registry is tested from end to end: set by a command, shown, kept by a file, reset. The test
+// names no attribute, so that a new one is tested without a change here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using attributes::AttributeDescription;
 using attributes::AttributeValue;
 using nlohmann::json;
 
-/// Not the standard one, where there is a choice.
+/// A value other than the default, where there is one.
 AttributeValue another_value(const AttributeDescription& attribute) {
     if (!attribute.choices.empty()) return attribute.choices.back();
     if (const bool* truth = std::get_if<bool>(&attribute.standard)) return !*truth;
@@ -44,7 +44,7 @@ protected:
 TEST_F(EveryAttribute, IsSetShownSavedAndTakenBack) {
     open(samples::floor_and_box());
     for (const AttributeDescription& attribute : attributes::registry()) {
-        // What collides is the primitive itself.
+        // The collision shape is the primitive itself.
         if (attribute.name == "collision_shape") continue;
         SCOPED_TRACE(attribute.name);
         const json value = attributes::to_json(another_value(attribute));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each kind of the table of kinds goes all the way: attributes, scene file, world, steps, commands, recording. Nothing
-// here names a kind, so a new one is tried without a line.
+// Each kind of the table of kinds is tested from end to end: attributes, scene file, world, steps, commands, recording.
+// The test names no kind, so that a new one is tested without a change here.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -27,7 +27,7 @@ using attributes::PhysicalKind;
 using nlohmann::json;
 using physics::ShapeDefinition;
 
-/// A shape that such matter can have: without default, so that the compiler asks for that of new matter.
+/// A shape that such matter can have. The switch has no default, so that the compiler refuses new matter without one.
 ShapeDefinition shape_of(Matter matter) {
     switch (matter) {
         case Matter::none:
@@ -44,7 +44,7 @@ ShapeDefinition shape_of(Matter matter) {
     return {};
 }
 
-/// What stands for it in the world.
+/// Whether the points, or their absence, are those of such matter.
 bool stands_for(Matter matter, const MovingPoints* points) {
     const auto* soft = dynamic_cast<const SoftNodes*>(points);
     switch (matter) {
@@ -69,7 +69,7 @@ bool moves(PhysicalKind kind) { return traits_of(kind).matter != Matter::none &&
 
 class EveryKind : public samples::LiveSession, public testing::WithParamInterface<PhysicalKind> {
 protected:
-    /// Of few points, where it has any.
+    /// Attributes for few points, where the kind has points.
     static std::map<std::string, attributes::AttributeValue> coarse() {
         std::map<std::string, attributes::AttributeValue> few;
         for (const char* name : {"cloth_nodes", "grain_budget", "particle_budget"})
@@ -98,7 +98,7 @@ TEST_P(EveryKind, HasEachAttributeThatConcernsIt) {
     ASSERT_TRUE(set.ok());
     EXPECT_EQ(kind_of(set.value()), GetParam());
     for (const attributes::AttributeDescription& attribute : attributes::registry()) {
-        // What collides is the primitive itself.
+        // The collision shape is the primitive itself.
         if (attribute.name == "collision_shape") continue;
         if (applies_to(attribute, GetParam())) {
             EXPECT_TRUE(set.value().find(attribute.name)) << attribute.name;
@@ -122,7 +122,7 @@ TEST_P(EveryKind, FallsAsAnythingDoesOrStays) {
     samples::step(*simulation, 30);
     const double step = simulation->world().settings().time_step, seconds = 30 * step,
                  fall = 9.81 / 2 * seconds * seconds;
-    // But for what it travels in a step.
+    // With a tolerance of the travel in one step.
     EXPECT_NEAR(before - height(*simulation), moves(GetParam()) ? fall : 0, 9.81 * seconds * step);
 }
 

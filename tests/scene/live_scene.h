@@ -13,13 +13,13 @@
 
 namespace embody::scene::samples {
 
-/// The thing that floor_and_box() puts on its floor.
+/// The entity that floor_and_box() puts on its floor.
 inline constexpr EntityIndex thing = 2;
 
-/// The document brought to life, without a catalogue; null, and the test fails, where that is refused.
+/// The simulation of a document, without a catalogue; null, and the test fails, where it is refused.
 std::unique_ptr<Simulation> make(const Document& document);
 void step(Simulation& simulation, int count);
-/// Grains, drops or nodes of an entity; none where it is one body.
+/// Grains, particles or nodes of an entity; none where it is one body.
 std::vector<Vec3> points_of(const Simulation& simulation, EntityIndex entity = thing);
 
 /// A session without a catalogue, and commands that must not be refused.

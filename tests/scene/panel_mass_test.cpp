@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the Studio's panel shows of a thing's mass is what the solver moves.
+// The Studio's panel shows the mass that the solver uses.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -46,7 +46,7 @@ TEST(PanelMass, IsTheSolversForEveryShapeWhateverAPersonSets) {
     int compared = 0;
     for (const Entity& sample : samples::everything().entities) {
         const auto* shape = std::get_if<physics::ShapeDefinition>(&sample.geometry);
-        // Planes, heightfields and sheets enclose nothing.
+        // Planes, heightfields and sheets enclose no volume.
         if (!shape || !(physics::mass_properties(*shape)->volume > 0)) continue;
         for (const OwnAttributes& own : sets) {
             Document document = samples::floor_and_box(1);
@@ -64,7 +64,7 @@ TEST(PanelMass, IsTheSolversForEveryShapeWhateverAPersonSets) {
     EXPECT_GE(compared, 7 * 8);
 }
 
-// Of the database that ./test imports from the collections on this machine; alone there is none.
+// Needs the database that ./test imports from the collections on this machine; without ./test there is none.
 TEST(PanelMass, IsTheSolversForRealModels) {
     const char* database = std::getenv("EMBODY_TEST_DATABASE");
     if (database == nullptr) GTEST_SKIP() << "EMBODY_TEST_DATABASE names no database of models";

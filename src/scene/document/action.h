@@ -14,7 +14,7 @@
 
 namespace embody::scene {
 
-/// Whom a trigger or an effect means: an entity by name or index, every entity of a category, or any.
+/// The entities that a trigger or an effect names: one by name or index, every entity of a category, or any.
 struct Target {
     enum class By : std::uint8_t { any, index, name, category } by = By::any;
     std::uint32_t index = 0;
@@ -52,7 +52,7 @@ inline constexpr auto fields_of<OnContactEnd> = std::tuple{
     always_saved("other", &OnContactEnd::other, "whom the sender ceases to touch"),
 };
 
-/// The sender's centre of mass comes into a box of the world; what starts inside has not entered.
+/// The sender's centre of mass enters a box of the world; an entity that starts inside has not entered.
 struct OnEnterVolume {
     Bounds volume{{0, 0, 0}, {0, 0, 0}};
 };

@@ -12,10 +12,10 @@
 
 namespace embody::scene {
 
-/// Of one document: more would fill the memory before they were simulated.
+/// Maximum number of entities of one document: more would fill the memory before they were simulated.
 inline constexpr std::size_t most_entities = 300'000;
 
-/// Where the eye is and what it looks at.
+/// Eye position and target of the camera.
 struct Camera {
     Vec3 position{4, 3, 6};
     Vec3 target;
@@ -27,7 +27,7 @@ inline constexpr auto fields_of<Camera> = std::tuple{
     always_saved("target", &Camera::target, "what it looks at", {.unit = "m"}),
 };
 
-/// The settings of the physics that a scene has. validate() has the same ranges, and the last word.
+/// The physics settings of a scene. validate() has the same ranges and decides.
 template <>
 inline constexpr auto fields_of<physics::WorldSettings> = std::tuple{
     always_saved("gravity", &physics::WorldSettings::gravity, "acceleration of free fall", {.unit = "m/s²"}),
@@ -53,7 +53,7 @@ inline constexpr auto fields_of<physics::WorldSettings> = std::tuple{
 };
 static_assert(lists_all_members<physics::WorldSettings>(), "a setting is in no list, or one is there twice");
 
-/// What belongs to a document as a whole.
+/// The fields of a document as a whole.
 struct Heading {
     std::string title = "Untitled";
     std::string description;
@@ -70,7 +70,7 @@ inline constexpr auto fields_of<Heading> = std::tuple{
 };
 static_assert(lists_all_members<Heading>(), "a member of Heading is in no list, or one is there twice");
 
-/// The paper's VS = {VSEle_i} (definition 1) with what acts in it. A plain value: copy, compare, save.
+/// The paper's VS = {VSEle_i} (definition 1) with its joints and actions. A plain value: copy, compare, save.
 struct Document : Heading {
     std::vector<Entity> entities;    ///< ascending index
     std::vector<SceneJoint> joints;  ///< ascending index

@@ -24,7 +24,7 @@ constexpr std::array<Spelling, 8> of_entities = {{{"position", "pose.position"},
                                                   {"friction", "attributes.friction_dynamic"}}};
 constexpr std::array<Spelling, 3> of_joints = {{{"joint.", ""}, {"body_a", "entity_a"}, {"body_b", "entity_b"}}};
 
-/// Whether `field` is `name` or a part of it; a name that ends in a sign is only a beginning.
+/// Whether `field` is `name` or a part of it; a name that ends in '.' or ' ' is a prefix.
 bool is_or_is_in(std::string_view field, std::string_view name) {
     if (!field.starts_with(name)) return false;
     const std::string_view rest = field.substr(name.size());

@@ -7,18 +7,18 @@
 
 namespace embody::scene {
 
-// Physics refuses a value by the name of the field in its own definition. These say it as the scene file spells it, so
-// that a person finds it there. What a scene file spells alike, and what is spelled so already, stays.
+// Physics refuses a value by the name of the field in its own definition. These functions return the scene file's name
+// of the field, so that a person finds it there. A name that is the same in both, or is the scene file's already,
+// stays.
 
-/// Of a number of a vector: "gravity.y" is "gravity[1]".
+/// Field with a component of a vector: "gravity.y" is "gravity[1]".
 std::string document_field(std::string field);
-/// Of an entity: "position.y" is "pose.position[1]", "material.restitution" is "attributes.restitution".
+/// Field of an entity: "position.y" is "pose.position[1]", "material.restitution" is "attributes.restitution".
 std::string entity_field(const std::string& field);
-/// Of a joint: "joint.motor.speed" is "motor.speed", "body_a" is "entity_a".
+/// Field of a joint: "joint.motor.speed" is "motor.speed", "body_a" is "entity_a".
 std::string joint_field(const std::string& field);
 
-/// `error` as seen from outside of a place such as a file, an entity or a joint, whose name (may be empty) goes before
-/// its field.
+/// `error` with the name of a place (a file, an entity or a joint; may be empty) before its field.
 Error in_place(const std::string& place, Error error);
 
 }  // namespace embody::scene

@@ -26,7 +26,7 @@ void NamesInUse::remove(const std::string& name) {
     const auto found = count_.find(name);
     if (--found->second > 0) return;
     count_.erase(found);
-    // "Box 7" is free for who wants "Box".
+    // Without "Box 7" that name is free for the next "Box".
     const std::size_t space = name.rfind(' ');
     int number = 0;
     const char* const end = name.data() + name.size();

@@ -9,22 +9,22 @@
 
 namespace embody::scene {
 
-/// The names that entities have, to find one that is free.
+/// The names of all entities, to find a free one.
 class NamesInUse {
 public:
     void add(const std::string& name) { ++count_[name]; }
     void remove(const std::string& name);
     void clear();
-    /// `wanted`, with the least number behind it that nobody has, where somebody has it.
+    /// `wanted` where no entity has it, else `wanted` with the lowest number behind it that is free.
     std::string free_name(const std::string& wanted);
 
 private:
     std::unordered_map<std::string, std::size_t> count_;
-    /// Of a wanted name the first number that may be free: all before it are taken.
+    /// By wanted name the first number that may be free: all before it are taken.
     std::unordered_map<std::string, int> next_number_;
 };
 
-/// What is looked up of a document that would take a walk over all of it otherwise. Follows its changes.
+/// Lookups that would otherwise search all of a document. Follows the document's changes.
 struct DocumentIndex {
     NamesInUse names;
     HoldIndex holds;  ///< pins and joints of the document

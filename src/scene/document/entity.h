@@ -16,9 +16,10 @@
 
 namespace embody::scene {
 
-/// Names an entity of a document for as long as the document lives; never used twice.
+/// Names an entity of a document for the lifetime of the document; never used twice.
 using EntityIndex = std::uint32_t;
-/// Higher ones are for what actions spawn in a running simulation. Joints and actions have none higher either.
+/// Higher indices are for entities that actions spawn in a running simulation. Indices of joints and actions are not
+/// higher either.
 inline constexpr EntityIndex last_document_index = 0x7FFFFFFF;
 inline constexpr NumberRange index_range{.low = 1, .high = last_document_index};
 
@@ -30,8 +31,7 @@ struct ModelReference {
 
 using Geometry = std::variant<ModelReference, physics::ShapeDefinition>;
 
-/// Where a thing that changes its form is held: its points within a distance of a place stay where they are, in the
-/// world or in another entity.
+/// Holds a deformable thing: its points within a distance of a place stay there, in the world or in another entity.
 struct Pin {
     Vec3 position;
     double radius = 0.01;
@@ -50,7 +50,7 @@ inline constexpr auto fields_of<Pin> = std::tuple{
 };
 static_assert(lists_all_members<Pin>(), "a member of Pin is in no list, or one is there twice");
 
-/// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): what it looks like, what it is made of, where it is.
+/// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): geometry, attributes and pose.
 struct Entity {
     EntityIndex index = 0;
     std::string name;

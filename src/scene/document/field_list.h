@@ -14,20 +14,20 @@
 
 namespace embody::scene {
 
-// The members of a plain value, listed once. What goes over all of them (file, messages, undo, comparison, the
+// The members of a plain value, listed once. All code that handles every member (file, messages, undo, comparison, the
 // description of the format, the Studio's types, the tests of these) follows the list, and a member that is in no list
 // does not compile.
 
 /// When a scene file has the field.
 enum class Saved : std::uint8_t {
     needed,    ///< always, and a file without it is refused
-    always,    ///< what a file leaves out is as it would be anyway
-    when_set,  ///< unless it is as it would be anyway
-    beside,    ///< not under a name: the fields of its value stand beside those of its owner
+    always,    ///< always; a file that leaves it out means the default
+    when_set,  ///< unless it has the default value
+    beside,    ///< without a name of its own: the fields of its value are beside those of its owner
     never,     ///< of the machine or of a run, not of the scene
 };
 
-/// One member, under the name that files and messages give it.
+/// One member, with its name in files and messages.
 template <class Owner, class Value, Saved when>
 struct Field {
     static constexpr Saved saved = when;
@@ -36,7 +36,7 @@ struct Field {
     const char* name;
     Value Owner::*member;
     const char* meaning;            ///< for people: a line of the format's description
-    attributes::NumberRange range;  ///< of a number; of others its unit alone counts
+    attributes::NumberRange range;  ///< of a number; of other values only the unit is used
 };
 
 using attributes::NumberRange;
@@ -65,15 +65,15 @@ constexpr Field<Owner, Value, Saved::never> never_saved(const char* name, Value 
     return {name, member, "", {}};
 }
 
-/// A tuple of all fields of `Owner`; beside each type that has one.
+/// A tuple of all fields of `Owner`; declared beside each type that has one.
 template <class Owner>
 inline constexpr auto fields_of = std::tuple{};
 
-/// The words of "type" that tell which alternative a variant holds, in its order; beside each variant that has them.
+/// The words of "type" for the alternatives of a variant, in its order; declared beside each variant that has them.
 template <class Variant>
 inline constexpr std::array<const char*, 0> alternatives_of{};
 
-/// The `name` of each alternative, where these have one.
+/// The `name` of each alternative, where the alternatives have one.
 template <class... Alternatives>
 constexpr std::array<const char*, sizeof...(Alternatives)> names_of(const std::variant<Alternatives...>*) {
     return {Alternatives::name...};
@@ -86,13 +86,13 @@ template <class Value>
 concept ListedVariant = alternatives_of<Value>
 .size() > 0;
 
-/// Stands for a value of any type where only its number counts.
+/// Converts to a value of any type; only the number of values matters.
 struct AnyValue {
     template <class Value>
     operator Value() const noexcept;
 };
 
-/// How many members an aggregate has: as many values as it can be made of.
+/// The number of members of an aggregate: the largest number of values that it can be made of.
 template <class Aggregate, class... Values>
 constexpr std::size_t count_members() {
     if constexpr (requires { Aggregate{Values{}..., AnyValue{}}; })
@@ -114,7 +114,7 @@ constexpr bool are_of_one_member(const One& one, const Other& other) {
     return false;
 }
 
-/// Whether the list has every member, and each once.
+/// Whether the list has every member exactly once.
 template <class Owner>
 constexpr bool lists_all_members() {
     std::size_t same = 0;
@@ -130,7 +130,7 @@ inline constexpr bool is_optional = false;
 template <class Value>
 inline constexpr bool is_optional<std::optional<Value>> = true;
 
-/// Whether all that a scene saves of two values is the same.
+/// Whether all saved fields of two values are equal.
 template <class Value>
 bool are_same(const Value& a, const Value& b) {
     if constexpr (Listed<Value>) {

@@ -11,10 +11,10 @@ namespace embody::scene {
 namespace {
 
 constexpr std::size_t most_edits = 1000;
-/// So many that come or go in a row are put in place one by one.
+/// Up to this many entities that come or go in a row are inserted or erased one by one.
 constexpr std::size_t few_entities = 4;
 
-// Puts an item in a list that is kept ascending by its number, or takes it out.
+// Inserts, replaces or erases an item in a list that is ascending by its number.
 template <class Item, class Number>
 void put_item(std::vector<Item>& items, Number Item::*number, const std::optional<Item>& before,
               const std::optional<Item>& after) {
@@ -51,7 +51,7 @@ struct Applier {
     void operator()(const HeadingChange& change) const { static_cast<Heading&>(document) = change.after; }
 };
 
-// Of changes that can become one: the kind, and whose it is.
+// Key of changes that can be merged: the kind of change and the entity; empty for other changes.
 std::optional<std::pair<std::size_t, EntityIndex>> merge_key(const Change& change) {
     if (const auto* moved = std::get_if<PoseChange>(&change)) return std::pair{change.index(), moved->index};
     const auto* changed = std::get_if<EntityChange>(&change);
@@ -64,7 +64,8 @@ bool comes_or_goes(const Change& change) {
     return entity && !(entity->before && entity->after);
 }
 
-// Entities that come and go in a row, in one walk over the list: each by itself would move all that follow it.
+// Inserts and erases entities that come and go in a row, in one pass over the list: one by one, each would move all
+// entities behind it.
 void put_entities(std::vector<Entity>& entities, std::span<const Change> changes) {
     std::map<EntityIndex, std::optional<Entity>> wanted;
     for (const Change& item : changes) {
@@ -131,7 +132,8 @@ std::vector<Change> reversed(const std::vector<Change>& changes) {
     return back;
 }
 
-// A drag is many small edits of the same poses, or of the same entity: the first state and the last one count.
+// A drag is many small edits of the same poses, or of the same entity: the first state before and the last state after
+// are kept.
 bool History::merge(Edit& edit) {
     if (!merging_ || done_.empty() || edit.merge.empty() || done_.back().merge != edit.merge || is_saved())
         return false;
@@ -156,7 +158,8 @@ bool History::merge(Edit& edit) {
 }
 
 void History::add(Edit edit) {
-    // What was undone can't be redone on another document; if it was on disk it is not any more.
+    // An undone edit can't be redone on another document; if the document on disk contained it, no state in the history
+    // is on disk any more.
     if (saved_ > document_edits_) saved_ = -1;
     undone_.clear();
     if (merge(edit)) return;

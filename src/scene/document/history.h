@@ -13,9 +13,9 @@
 
 namespace embody::scene {
 
-// What an edit does to a document, told so that it can be done and undone: both states of what it touches.
+// Changes of a document in a form that can be done and undone: the states before and after of everything they change.
 
-/// An entity comes (no `before`), goes (no `after`) or changes. Where the geometry stays it is in neither: a mesh of a
+/// An entity comes (no `before`), goes (no `after`) or changes. An unchanged geometry is in neither state: a mesh of a
 /// thousand triangles is not copied with each move of a slider.
 struct EntityChange {
     std::optional<Entity> before, after;
@@ -36,65 +36,66 @@ struct HeadingChange {
 };
 using Change = std::variant<EntityChange, PoseChange, JointChange, ActionChange, HeadingChange>;
 
-/// What an act on the catalogue's models left in the audit of manual changes. They are no part of the document.
+/// Record of an act on the catalogue's models in the audit of manual changes. Such changes are no part of the document.
 struct CatalogStep {
-    std::int64_t back = 0;   ///< the batch that undo takes back
-    std::int64_t again = 0;  ///< once undone: the batch that redo takes back
+    std::int64_t back = 0;   ///< the batch that undo reverts
+    std::int64_t again = 0;  ///< after undo: the batch that redo reverts
 };
 
 /// One step of undo: changes of the document, or an act on the catalogue.
 struct Edit {
-    std::string label;                            ///< for people: "Move chair"
-    std::string merge;                            ///< edits in a row with the same one, not empty, are one step: a drag
-    std::vector<Change> changes;                  ///< in order
+    std::string label;            ///< for people: "Move chair"
+    std::string merge;            ///< edits in a row with the same non-empty text become one step: a drag
+    std::vector<Change> changes;  ///< in order
     EntityIndex next_before = 0, next_after = 0;  ///< the document's next_index
-    std::optional<CatalogStep> catalog = {};      ///< then there are no changes
+    std::optional<CatalogStep> catalog = {};      ///< such an edit has no changes
 };
 
-/// An edit that changes an entity's other fields but not its geometry.
+/// An edit of an entity's fields other than its geometry.
 EntityChange change_of(const Entity& before, const Entity& after);
 
-/// Does the changes to the document, in order.
+/// Applies the changes to the document, in order.
 void apply_changes(Document& document, const std::vector<Change>& changes);
-/// The changes that take these back, the last one first.
+/// The changes that revert these, the last one first.
 std::vector<Change> reversed(const std::vector<Change>& changes);
-/// The change that takes `change` back.
+/// The change that reverts `change`.
 Change reversed(const Change& change);
 
 /// The edits that were done and those that were undone.
 class History {
 public:
     void add(Edit edit);
-    /// What undo would take back; null where there is nothing.
+    /// The edit that undo would revert; null where there is none.
     [[nodiscard]] const Edit* undoable() const { return done_.empty() ? nullptr : &done_.back(); }
     [[nodiscard]] const Edit* redoable() const { return undone_.empty() ? nullptr : &undone_.back(); }
-    /// The edit has been undone or redone.
+    /// Call after the edit was undone or redone.
     void move_back();
     void move_forward();
     void clear();
 
-    /// The edit was an act on the catalogue and has been undone by this batch.
+    /// Call after the edit, an act on the catalogue, was undone by this batch.
     void move_back(std::int64_t batch);
-    /// The edit that undo, or redo, would take next can't be carried out any more.
+    /// Removes the edit that is next for undo, or redo, since it can't be carried out any more.
     void drop_undoable() { done_.pop_back(); }
     void drop_redoable() { undone_.pop_back(); }
 
-    /// The document is on disk as it is now.
+    /// The document as it is now is on disk.
     void mark_saved() {
         saved_ = document_edits_;
         merging_ = false;
     }
     [[nodiscard]] bool is_saved() const { return saved_ == document_edits_; }
-    /// The document is on no disk, whatever is undone.
+    /// No state of the document is on disk, whatever is undone.
     void mark_unsaved() { saved_ = -1; }
 
 private:
     bool merge(Edit& edit);
 
     std::deque<Edit> done_, undone_;
-    std::ptrdiff_t document_edits_ = 0;  ///< of those done: acts on the catalogue leave the document as it is
-    std::ptrdiff_t saved_ = 0;           ///< their number when it was saved; -1: never again
-    bool merging_ = false;               ///< the last thing that happened was an edit
+    std::ptrdiff_t document_edits_ =
+        0;                      ///< number of done edits of the document; acts on the catalogue are not counted
+    std::ptrdiff_t saved_ = 0;  ///< their number when it was saved; -1: never again
+    bool merging_ = false;      ///< the last thing that happened was an edit
 };
 
 }  // namespace embody::scene

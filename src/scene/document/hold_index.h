@@ -10,7 +10,7 @@
 
 namespace embody::scene {
 
-/// Who holds on to an entity: found from that entity, so that nobody has to ask all others.
+/// Pins and joints by the entity that they hold, so that all entities need not be searched.
 class HoldIndex {
 public:
     void add_pins(EntityIndex of, const std::vector<Pin>& pins) {
@@ -30,7 +30,7 @@ public:
         if (joint.entity_a) remove(joints_of_, *joint.entity_a, joint.index);
     }
 
-    /// Those with a pin to the entity, ascending; it may be one that is not there yet.
+    /// Entities with a pin to the entity, ascending; the entity may not exist yet.
     [[nodiscard]] const std::set<EntityIndex>& pinned_to(EntityIndex entity) const { return find(pinned_to_, entity); }
     /// Joints with an end at the entity, ascending.
     [[nodiscard]] const std::set<std::uint32_t>& joints_of(EntityIndex entity) const {

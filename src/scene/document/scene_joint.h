@@ -14,7 +14,7 @@ namespace embody::scene {
 struct SceneJoint {
     std::uint32_t index = 0;
     std::string name;
-    std::optional<EntityIndex> entity_a;  ///< open: the world
+    std::optional<EntityIndex> entity_a;  ///< empty: the world
     EntityIndex entity_b = 0;
     physics::JointDefinition definition;  ///< its body handles are left null
 };
@@ -43,7 +43,7 @@ inline constexpr auto fields_of<physics::SliderJoint> = std::tuple{
     saved_when_set("motor", &physics::SliderJoint::motor, "moves it"),
 };
 
-/// What a joint leaves free.
+/// The free directions of a joint.
 template <>
 inline constexpr auto alternatives_of<physics::JointKind> = names_of(static_cast<const physics::JointKind*>(nullptr));
 

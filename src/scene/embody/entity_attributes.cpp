@@ -23,10 +23,10 @@ using attributes::PhysicalKind;
 
 namespace {
 
-/// Of one document few are different, unless each has its own numbers: then there is no use in keeping more.
+/// Few sets of a document are different, unless each entity has its own numbers: then caching more has no use.
 constexpr std::size_t most_shared_sets = 4096;
 
-// The entity's own attributes, checked: a document made by a program has not been through the file's reader.
+// The entity's own attributes, checked: a document that a program made was not checked by the file's reader.
 Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
     std::vector<AttributeEntry> entries;
     for (const auto& [name, value] : entity.attributes) {
@@ -44,13 +44,13 @@ attributes::AttributeValue multiplied(attributes::AttributeValue value, double f
     return value;
 }
 
-// 0 of what the registry does not know.
+// Power of the size for an attribute; 0 for a name that is not in the registry.
 int size_power(const std::string& name) {
     const attributes::AttributeDescription* description = attributes::describe(name);
     return description ? description->size_power : 0;
 }
 
-// The same material in another size.
+// The attributes of the same material at another size.
 AttributeSet scaled(const AttributeSet& set, double s) {
     AttributeSet out = set;
     for (const AttributeEntry& held : set.entries()) {
@@ -73,26 +73,27 @@ void put_measured(AttributeSet& set, const char* name, attributes::AttributeValu
         set.put({name, std::move(value), {}, {}, std::move(source), AttributeLevel::measured});
 }
 
-// What a person says that a primitive is; empty: nothing.
+// The category that a person set for a primitive; empty: none.
 std::string category_of(const Entity& entity) {
     const auto own = entity.attributes.find("category");
     const auto* word = own == entity.attributes.end() ? nullptr : std::get_if<std::string>(&own->second);
     return word ? *word : entity.category;
 }
 
-// That a person gave it.
+// The kind that a person set.
 std::optional<PhysicalKind> own_kind(const Entity& entity) {
     const auto own = entity.attributes.find("kind");
     return own == entity.attributes.end() ? std::nullopt : attributes::kind_from_value(own->second);
 }
 
-// What a person makes of triangles that would be static otherwise.
+// Whether a person made a triangle mesh movable, which would be static otherwise.
 bool is_moved(const Entity& entity) {
     const auto own = own_kind(entity);
     return own ? !is_static(*own) : !category_of(entity).empty();
 }
 
-// A primitive that no category makes soft or the like is solid, of the default density, and its form is known exactly.
+// A primitive without a category, or with the category of a rigid thing, is solid, of the default density, and its form
+// is exact.
 AttributeSet solid_attributes(const std::string& category, const physics::ShapeDefinition& shape,
                               const ModelFacts& facts) {
     AttributeSet set;
@@ -114,17 +115,17 @@ AttributeSet solid_attributes(const std::string& category, const physics::ShapeD
         put_measured(set, "drag_area", (s.x * s.y + s.y * s.z + s.z * s.x) / 2, "mean projected area of its box");
     }
     attributes::complete_for_kind(set);
-    // What collides is the primitive itself.
+    // The collision shape is the primitive itself.
     set.erase("collision_shape");
     return set;
 }
 
-// How fine the grains or the liquid are, of this size of the thing.
+// Adds the resolution of grains or liquid for the size of this thing.
 void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry) {
     attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
 }
 
-// All that an entity's attributes follow from.
+// Key of everything that an entity's attributes follow from.
 GeometryKey attributes_key(const Entity& entity) {
     GeometryKey key = key_of(entity.geometry);
     if (!key.is_shared()) return key;
@@ -202,7 +203,7 @@ Result<SharedAttributes> EntityAttributes::shared(const Entity& entity) {
     if (!made.ok()) return made.error();
     SharedAttributes set = std::make_shared<const AttributeSet>(std::move(made).value());
     if (!key.is_shared()) return set;
-    // Who has one keeps it.
+    // Entities that hold a set keep it.
     if (sets_.size() >= most_shared_sets) sets_.clear();
     sets_.emplace(std::move(key), set);
     return set;
@@ -222,7 +223,7 @@ Result<std::vector<attributes::Issue>> EntityAttributes::contradictions(const En
     const AttributeSet& acting = *shared.value();
     const bool is_changed = std::ranges::any_of(
         acting.entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
-    // What nobody set is as it was resolved; of primitives the physics knows the form itself.
+    // Without manual entries the set is as it was resolved. The physics knows the form of a primitive itself.
     const auto* model = std::get_if<ModelReference>(&entity.geometry);
     std::vector<attributes::Issue> issues;
     if (!is_changed) return issues;

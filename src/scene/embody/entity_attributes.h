@@ -17,32 +17,32 @@ namespace embody::scene {
 
 using SharedAttributes = std::shared_ptr<const attributes::AttributeSet>;
 
-/// What entities are made of.
+/// Attributes of entities.
 class EntityAttributes {
 public:
     /// `models` outlives this.
     explicit EntityAttributes(KnownModels& models) : models_(models) {}
 
-    /// The attributes as they act: the model's or the primitive's, with the entity's own over them. Errors name the
-    /// field of the entity.
+    /// The attributes in effect: the model's or the primitive's, overridden by the entity's own. Errors name the field
+    /// of the entity.
     Result<attributes::AttributeSet> acting(const Entity& entity);
-    /// The same; those that have the same have one set between them.
+    /// The same; entities with equal attributes share one set.
     Result<SharedAttributes> shared(const Entity& entity);
-    /// What they would be without the entity's own.
+    /// The attributes without the entity's own.
     Result<attributes::AttributeSet> automatic(const Entity& entity);
-    /// What of the attributes as they act contradicts each other: a person can set what cannot be.
+    /// Contradictions between the attributes in effect: a person can set impossible values.
     Result<std::vector<attributes::Issue>> contradictions(const Entity& entity);
     /// Whether its kind is fluid; false where the model is unknown.
     bool is_liquid(const Entity& entity);
 
-    /// A model has changed: sets that were shared may be old.
+    /// Call when a model has changed: shared sets may be out of date.
     void forget_shared() { sets_.clear(); }
 
 private:
     [[nodiscard]] attributes::AttributeSet lay_over(const attributes::AttributeSet& automatic,
                                                     const std::vector<attributes::AttributeEntry>& own,
                                                     const attributes::ModelFacts& facts) const;
-    /// Without its own: what its category says where that is no rigid thing's, else those of something solid.
+    /// Attributes without the entity's own: those of its category if that is not rigid, else those of a solid body.
     [[nodiscard]] attributes::AttributeSet primitive_attributes(const Entity& entity,
                                                                 const physics::ShapeDefinition& shape,
                                                                 const attributes::ModelFacts& facts) const;
@@ -50,10 +50,10 @@ private:
 
     KnownModels& models_;
     PrimitiveFacts primitives_;
-    std::map<GeometryKey, SharedAttributes> sets_;  ///< by all that they follow from
+    std::map<GeometryKey, SharedAttributes> sets_;  ///< by everything that they follow from
 };
 
-/// The value of an attribute of an entity that is drawn at `scale`, as the model itself has it.
+/// The value for the model itself of an attribute of an entity that is drawn at `scale`.
 attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,
                                           double scale);
 

@@ -71,9 +71,9 @@ Result<physics::BodyDefinition> body_of(const Entity& entity, const AttributeSet
         body.enabled = entity.enabled;
     }
 
-    // A primitive weighs what its attributes say; the physics knows where it has its centre, and its moments.
+    // The mass of a primitive is that of its attributes; the physics computes its centre and its moments.
     if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
-        // It collides as its hull, but weighs by what its triangles enclose.
+        // The mesh collides as its convex hull, but its mass properties are those of the enclosed volume.
         const bool is_mesh =
             std::holds_alternative<physics::MeshShape>(std::get<physics::ShapeDefinition>(entity.geometry));
         const auto is_known = [&](const char* name) {
@@ -88,7 +88,7 @@ Result<physics::BodyDefinition> body_of(const Entity& entity, const AttributeSet
         body.mass.density *= attributes.number("fill_fraction", 1);
     }
 
-    // Where it is and how it starts.
+    // Pose and initial velocity.
     body.position = entity.pose.position;
     body.rotation = entity.pose.rotation;
     body.linear_velocity = entity.linear_velocity;
@@ -104,7 +104,7 @@ Result<physics::BodyDefinition> body_of(const Entity& entity, const AttributeSet
 
 Result<physics::ShapeDefinition> shape_of(const Entity& entity, const AttributeSet& attributes, KnownModels& models) {
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
-        // Triangles have no inside that could move; a mesh that is made movable collides as its convex hull.
+        // Triangles have no inside that could move; a mesh that a person made movable collides as its convex hull.
         const auto* mesh = std::get_if<physics::MeshShape>(shape);
         if (!mesh || is_static(kind_of(attributes))) return *shape;
         return hull_of(*mesh);

@@ -11,9 +11,10 @@
 
 namespace embody::scene {
 
-// Bodies of entities, from their attributes as they act.
+// Bodies of entities, from their attributes in effect.
 
-/// Everything but the shape's handle. What is only drawn becomes a disabled static body. `taxonomy` may be null.
+/// Everything but the shape's handle. A thing that is only drawn becomes a disabled static body. `taxonomy` may be
+/// null.
 Result<physics::BodyDefinition> body_of(const Entity& entity, const attributes::AttributeSet& attributes,
                                         const attributes::Taxonomy* taxonomy);
 Result<physics::ShapeDefinition> shape_of(const Entity& entity, const attributes::AttributeSet& attributes,

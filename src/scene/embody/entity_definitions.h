@@ -10,8 +10,8 @@
 
 namespace embody::scene {
 
-/// The way from geometric and physical attributes to what the physics needs: what entities are made of and, where they
-/// are not one body, what stands for them. Bodies and shapes: entity_body.h.
+/// Turns geometric and physical attributes into definitions of the physics: attributes, and points for entities that
+/// are not one body. Bodies and shapes: entity_body.h.
 struct EntityDefinitions {
     /// `catalog` may be null; it outlives this. `forms` may have been filled by others before.
     explicit EntityDefinitions(catalog::Catalog* catalog,

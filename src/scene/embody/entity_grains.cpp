@@ -23,12 +23,12 @@ Result<GrainDefinition> EntityPoints::grains(const Entity& entity, const attribu
     if (!centers.ok()) return centers.error();
     grains.centers = std::move(centers).value();
 
-    // Together they weigh what the thing does.
+    // The mass of all grains together is that of the thing.
     const double volume = physics::mass_properties(physics::SphereShape{grains.diameter / 2}).volume;
     const double mass = attributes.number("mass", 1) / static_cast<double>(grains.centers.size());
     grains.body.mass = {.density = std::clamp(mass / volume, 1e-3, 1e5)};
 
-    // A heap swallows what falls on it, so grains bounce only where a person says so.
+    // A pile absorbs the energy of things that fall on it, so grains bounce only where a person sets it.
     const physics::Material own = grains.body.material;
     physics::Material& material = grains.body.material;
     material = physics::grain_material(attributes.number("friction_angle", 34), grains.diameter);

@@ -13,7 +13,7 @@
 
 namespace embody::scene {
 
-/// What things that bend are computed on, in the size of the model or primitive: made once for each. What is returned
+/// Simulation meshes of deformable things in the size of the model or primitive: made once for each. A returned pointer
 /// is valid until the next call; the error says why the thing cannot be of that kind.
 class EntityMeshes {
 public:
@@ -24,7 +24,7 @@ public:
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
     /// The sheet of an entity of kind cloth, the line of one of kind rope.
     Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
-    /// Forgets those of a model.
+    /// Forgets the meshes of a model.
     void forget(const std::string& key) {
         forms_->soft_meshes.erase(key_of_model(key));
         forms_->thin_forms.erase(key_of_model(key));

@@ -16,7 +16,7 @@ namespace {
 
 const std::string rigid_because = "is simulated as rigid, because ";
 
-// Equal where the shape is, the kind, and these attributes.
+// Equal keys mean equal shape, kind and values of these attributes.
 GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& attributes,
                        std::initializer_list<const char*> names) {
     GeometryKey key = shape_key(entity, attributes);
@@ -25,7 +25,7 @@ GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& att
     return key;
 }
 
-// Equal where the nodes of what changes its form are.
+// Equal keys mean equal nodes of a deformable.
 GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments"});
     key.numbers.push_back(entity.scale);

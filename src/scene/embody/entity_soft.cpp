@@ -10,7 +10,8 @@ namespace embody::scene {
 
 namespace {
 
-// Of the cells: thin beside what is drawn, wide beside rounding.
+// Collision radius as a fraction of the cell size, and its bounds (m): small beside the drawn form, large beside
+// rounding errors.
 constexpr double radius_share = 0.02, least_radius = 5e-4, greatest_radius = 5e-3;
 
 }  // namespace

@@ -13,7 +13,8 @@ using attributes::PhysicalKind;
 
 namespace {
 
-// Of cloth: half of its thickness, but not so little beside its edges that every corner between two nodes shows.
+// Collision radius of cloth: half of its thickness, but at least this fraction of an edge, so that corners between
+// nodes do not show. Bounds in m.
 constexpr double sheet_radius_share = 0.03, sheet_least_radius = 1e-3, sheet_greatest_radius = 0.02;
 constexpr double least_rope_radius = 5e-4, greatest_rope_radius = 0.5;
 

@@ -18,7 +18,7 @@ using physics::ConeShape;
 using physics::CylinderShape;
 using physics::SphereShape;
 
-// Whether a ball about p lies within, in the region's own frame.
+// Whether a ball about p is inside, in the region's own frame.
 struct HoldsBall {
     Vec3 p;
     double r;

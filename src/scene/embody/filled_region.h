@@ -12,14 +12,14 @@
 
 namespace embody::scene {
 
-/// The inside of a shape that is to be filled, in its frame.
+/// The inside of a shape that will be filled, in the shape's frame.
 class FilledRegion {
 public:
     /// The error says why the shape has no inside.
     static Result<FilledRegion> of(const physics::ShapeDefinition& shape);
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    /// Whether the ball lies wholly within one of its convex parts.
+    /// Whether the whole ball is inside one of the convex parts.
     [[nodiscard]] bool holds_ball(Vec3 center, double radius) const;
 
 private:

@@ -13,18 +13,18 @@
 
 namespace embody::scene {
 
-/// What a thing of kind cloth or rope is computed on.
+/// Simulation mesh of a thing of kind cloth or rope.
 using ThinForm = std::variant<attributes::SheetMesh, LineForm>;
 
-/// What things that bend are computed on: made once, however often the scene is reset. Used by one thread.
+/// Simulation meshes of deformable things: made once, however often the scene is reset. Used by one thread.
 struct FormCache {
-    /// Without a key of its own: the last that nobody else has.
+    // Under the key of unshared things is the mesh that was made last.
     std::map<GeometryKey, Result<catalog::SoftMesh>> soft_meshes;
-    std::map<GeometryKey, std::map<std::string, Result<ThinForm>>> thin_forms;  ///< the same; in it by kind and count
+    std::map<GeometryKey, std::map<std::string, Result<ThinForm>>> thin_forms;  ///< by geometry, then kind and count
     std::size_t made = 0;                                                       ///< soft meshes so far
 
-    /// For a new simulation: models may have been imported again, and of primitives that were tried out no more are
-    /// kept than a scene may have.
+    /// Call before a new simulation: removes meshes of models, which may have been imported again, and all meshes if
+    /// there are more of primitives than a scene may have.
     void begin();
 };
 

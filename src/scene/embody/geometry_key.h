@@ -10,7 +10,7 @@
 
 namespace embody::scene {
 
-/// What a thing is made from: a geometry, with what else it follows from. Where keys are equal, so are the things.
+/// Key of a thing that is made from a geometry and other values. Equal keys mean equal things.
 struct GeometryKey {
     enum class Of : std::uint8_t {
         nobody_else,  ///< too large to be compared
@@ -21,18 +21,18 @@ struct GeometryKey {
     std::vector<std::string> words;
     std::vector<double> numbers;
 
-    /// Whether others may have the same.
+    /// Whether other things may have the same key.
     [[nodiscard]] bool is_shared() const { return of != Of::nobody_else; }
     friend std::partial_ordering operator<=>(const GeometryKey&, const GeometryKey&) = default;
     friend bool operator==(const GeometryKey&, const GeometryKey&) = default;
 };
 
-/// Convex primitives by their kind and all their numbers. Compounds, planes, heightfields and meshes are too large, or
-/// there once.
+/// Convex primitives: by their kind and all their numbers. Compounds, planes, heightfields and meshes are too large, or
+/// occur only once.
 GeometryKey key_of(const physics::ShapeDefinition& shape);
 /// A model by its key, without its scale.
 GeometryKey key_of_model(const std::string& key);
-/// The same of an entity's geometry.
+/// The key of an entity's geometry.
 GeometryKey key_of(const Geometry& geometry);
 
 }  // namespace embody::scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Face-centred cubic rows, loosened and shaken (docs/physics/grains.md: Filling).
+// Face-centred cubic rows, loosened and with random shifts (docs/physics/grains.md: Filling).
 #include "scene/embody/grain_filling.h"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace embody::scene {
 namespace {
 
 constexpr double spacing = 1.1;  // of the rows, in diameters: 0.74 / 1.1³ = 0.556 of the space is grain
-// Largest shift along an axis, in diameters: two balls 0.1 d apart that move towards each other by √3 as much still
-// do not touch.
+// Largest random shift along an axis, in diameters: two balls 0.1 d apart that are both shifted by √3 times that
+// towards each other still do not touch.
 constexpr double shake = 0.028;
-// Places looked at: so many are a second's work.
+// Maximum number of lattice places: they take about a second.
 constexpr std::size_t most_places = 50'000'000;
-// The rule for the diameter counts no edges: so much of what fits may be left out at the top.
+// The rule for the diameter ignores edges: at most this fraction of the wanted number may be left out at the top.
 constexpr double most_left_out = 0.5;
 
 }  // namespace

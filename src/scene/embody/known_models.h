@@ -12,7 +12,7 @@
 
 namespace embody::scene {
 
-/// A model of the catalogue as entities need it.
+/// A model of the catalogue with the data that entities need.
 struct KnownModel {
     catalog::ModelSummary summary;
     attributes::ModelFacts facts;
@@ -25,15 +25,15 @@ public:
     /// `catalog` may be null, then no model is known; it outlives this.
     explicit KnownModels(catalog::Catalog* catalog) : catalog_(catalog) {}
 
-    /// Valid until it is forgotten.
+    /// Valid until forget() is called for it.
     Result<const KnownModel*> find(const std::string& key);
-    /// Of an entity; fails for what is not a model.
+    /// Summary of an entity's model; fails for an entity without a model.
     Result<catalog::ModelSummary> summary_of(const Entity& entity);
     void forget(const std::string& key) { models_.erase(key); }
 
-    /// Null without one.
+    /// Null without a catalogue.
     [[nodiscard]] catalog::Catalog* catalog() const { return catalog_; }
-    /// The catalogue's; null without one.
+    /// The catalogue's taxonomy; null without a catalogue.
     [[nodiscard]] const attributes::Taxonomy* taxonomy() const { return catalog_ ? &catalog_->taxonomy() : nullptr; }
 
 private:

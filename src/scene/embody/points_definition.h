@@ -12,25 +12,25 @@
 
 namespace embody::scene {
 
-/// What grains are filled in, and of what they are.
+/// Places, size and matter of grains.
 struct GrainDefinition {
     std::vector<Vec3> centers;     ///< in the entity's frame, m
     double diameter = 0.01;        ///< of a ball, m
-    physics::BodyDefinition body;  ///< of each ball but for place and shape; pose and force are the entity's
+    physics::BodyDefinition body;  ///< of each ball, without place and shape; pose and force are the entity's
 };
 
-/// A body of liquid as it begins.
+/// The initial state of a body of liquid.
 struct LiquidDefinition {
-    physics::ShapeDefinition shape;          ///< that it fills, less the bodies that stand in it
+    physics::ShapeDefinition shape;          ///< the shape that it fills, without the bodies in it
     Transform pose;                          ///< of the shape
-    physics::FluidDefinition matter;         ///< neither volume nor velocity
-    std::size_t particle_budget = 0;         ///< most particles
-    Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid thing
-    Vec3 force;                              ///< constant, N, shared among the particles
+    physics::FluidDefinition matter;         ///< without volume and velocity
+    std::size_t particle_budget = 0;         ///< maximum number of particles
+    Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid body
+    Vec3 force;                              ///< constant, N, distributed over the particles
     bool enabled = true;
 };
 
-/// What stands for an entity that is not one body.
+/// The points of an entity that is not one body.
 using PointsDefinition = std::variant<GrainDefinition, LiquidDefinition, physics::DeformableDefinition>;
 
 }  // namespace embody::scene

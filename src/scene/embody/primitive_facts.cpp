@@ -10,7 +10,7 @@ using attributes::ModelFacts;
 
 namespace {
 
-// Triangles have the volume that they enclose; none where they enclose nothing.
+// Volume that the triangles enclose; 0 where they enclose none.
 void put_enclosed(const physics::MeshShape& mesh, attributes::GeometryFacts& form) {
     const geometry::VolumeEstimate enclosed = physics::enclosed_by(mesh);
     form.closed = enclosed.method == geometry::VolumeMethod::closed_mesh;

@@ -10,23 +10,23 @@
 
 namespace embody::scene {
 
-/// What the physics knows of a primitive's form; zero volume for planes, heightfields and meshes.
+/// Facts of a primitive's form that the physics knows; zero volume for planes, heightfields and meshes.
 attributes::ModelFacts primitive_facts(const physics::ShapeDefinition& shape);
 
-/// What a mesh that moves collides as.
+/// The collision shape of a mesh that moves.
 physics::ShapeDefinition hull_of(const physics::MeshShape& mesh);
 
-/// The same facts, found once for each primitive. What is returned is valid until the next call.
+/// The same facts, computed once for each primitive. A returned reference is valid until the next call.
 class PrimitiveFacts {
 public:
     const attributes::ModelFacts& of(const physics::ShapeDefinition& shape);
-    /// Of triangles that move with what they enclose.
+    /// Facts of a mesh that moves, with its enclosed volume.
     const attributes::ModelFacts& of_enclosed(const physics::MeshShape& mesh);
 
 private:
     std::map<GeometryKey, attributes::ModelFacts> known_;
-    attributes::ModelFacts last_;                                      ///< of one that nobody else has
-    std::pair<physics::MeshShape, attributes::ModelFacts> last_mesh_;  ///< that moves
+    attributes::ModelFacts last_;                                      ///< of a primitive whose key is not shared
+    std::pair<physics::MeshShape, attributes::ModelFacts> last_mesh_;  ///< of a mesh that moves
 };
 
 }  // namespace embody::scene

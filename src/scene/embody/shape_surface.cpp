@@ -13,8 +13,8 @@ namespace {
 
 using physics::ShapeDefinition;
 
-constexpr int sides = 32;  // of what is round
-constexpr int rings = 8;   // of a quarter turn
+constexpr int sides = 32;  // of a round surface
+constexpr int rings = 8;   // in a quarter turn
 
 void add_ring(std::vector<Vec3>& points, double radius, double height) {
     for (int i = 0; i < sides; ++i) {
@@ -23,7 +23,7 @@ void add_ring(std::vector<Vec3>& points, double radius, double height) {
     }
 }
 
-// A cap of a sphere about (0, center, 0), up or down.
+// Adds a cap of a sphere about (0, center, 0), up or down.
 void add_cap(std::vector<Vec3>& points, double radius, double center, double up) {
     for (int ring = 0; ring < rings; ++ring) {
         const double angle = std::numbers::pi / 2 * ring / rings;
@@ -61,7 +61,7 @@ std::vector<Vec3> corners(const physics::ConeShape& s) {
 }
 std::vector<Vec3> corners(const physics::HasCorners auto& s) { return s.corners(); }
 
-// A convex shape is the hull of its corners.
+// The surface of a convex shape is the hull of its corners.
 template <class Convex>
 Result<void> add_convex(const Convex& convex, const Transform& local, geometry::TriangleMesh& mesh) {
     std::vector<Vec3> points = corners(convex);

@@ -19,12 +19,12 @@ using attributes::SheetMesh;
 using physics::DeformableDefinition;
 using physics::ShapeDefinition;
 
-constexpr double most_thickness = 1.0 / 3;  // of a sheet, over its width
-constexpr double most_width = 1.0 / 4;      // of a line, over its length
-constexpr double least_cover = 0.5;         // of a triangle: what less of the thing lies over is outside
+constexpr double most_thickness = 1.0 / 3;  // of a sheet, relative to its width
+constexpr double most_width = 1.0 / 4;      // of a line, relative to its length
+constexpr double least_cover = 0.5;         // covered fraction of a triangle; a triangle with less is outside
 constexpr int samples = 4;                  // along an edge of a triangle
 
-// Axes by extent, the least first.
+// Axes by extent, the smallest first.
 std::array<int, 3> axes_by_extent(Vec3 size) {
     std::array<int, 3> axes{0, 1, 2};
     std::ranges::stable_sort(axes, {}, [size](int axis) { return size[axis]; });
@@ -35,10 +35,10 @@ Error no_sheet(std::string why) { return {"shape", "it is no sheet: " + std::mov
 Error no_line(std::string why) { return {"shape", "it is no rope: " + std::move(why), "make it rigid or soft"}; }
 std::string metres(double value) { return attributes::short_number(value) + " m"; }
 
-// Of equilateral triangles that cover an area with so many nodes.
+// Edge length of equilateral triangles that cover an area with this number of nodes.
 double edge_for(double area, int nodes) { return std::sqrt(2 * area / (std::sqrt(3.0) * nodes)); }
 
-// What lies flat in XZ, with its X along `u` and its Z along `v`.
+// Turns a form that lies flat in XZ: its X is along `u` and its Z along `v`.
 SheetMesh placed(const DeformableDefinition& flat, Vec3 center, int u, int v) {
     SheetMesh sheet;
     for (const Vec3 node : flat.nodes) {
@@ -78,7 +78,7 @@ bool covers(const std::array<Vec3, 3>& t, Vec3 p, const Plane& plane) {
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-// How much of a triangle of the sheet the surface lies over.
+// The fraction of a sheet's triangle that the surface covers.
 double cover_of(const std::array<Vec3, 3>& triangle, const geometry::TriangleMesh& surface,
                 const geometry::BoundingVolumeTree& tree, const Plane& plane) {
     int covered = 0, all = 0;
@@ -100,7 +100,7 @@ double cover_of(const std::array<Vec3, 3>& triangle, const geometry::TriangleMes
     return static_cast<double>(covered) / all;
 }
 
-// The largest part that hangs together by edges' ends, and only the nodes that it uses.
+// The largest part that is connected by edges' ends, and only the nodes that it uses.
 SheetMesh largest_part(const SheetMesh& sheet) {
     std::vector<std::uint32_t> leader(sheet.nodes.size());
     std::iota(leader.begin(), leader.end(), 0u);
@@ -133,7 +133,7 @@ SheetMesh largest_part(const SheetMesh& sheet) {
     return part;
 }
 
-// Along an axis, `half` to either side of the origin.
+// A line along an axis, `half` to either side of the origin.
 LineForm straight_line(int axis, double half, double diameter, int segments) {
     LineForm line;
     line.diameter = diameter;
@@ -152,7 +152,7 @@ Result<int> long_axis(Vec3 size) {
     return longest;
 }
 
-// Weights and middles of a surface at places along an axis.
+// Weights and centres of a surface at places along an axis.
 struct Slices {
     std::vector<double> weight;
     std::vector<Vec3> center;
@@ -226,7 +226,7 @@ Result<LineForm> line_of(const geometry::TriangleMesh& surface, int segments) {
     LineForm line;
     const double spacing = box.size()[*axis] / segments;
     for (std::size_t k = 0; k < slices.weight.size(); ++k) {
-        // Where nothing is, as before.
+        // Where a slice is empty, the node before it is used.
         Vec3 node = k > 0 ? line.nodes[k - 1] : box.center();
         if (slices.weight[k] > 0) node = slices.center[k] / slices.weight[k];
         node[*axis] = box.lower[*axis] + spacing * static_cast<double>(k);

@@ -10,7 +10,7 @@
 
 namespace embody::scene {
 
-/// What stands for a thin long thing.
+/// The centre line of a thin long thing.
 struct LineForm {
     std::vector<Vec3> nodes;  ///< along its middle, in its frame, m
     double diameter = 0;      ///< m
@@ -22,8 +22,8 @@ struct LineForm {
 Result<attributes::SheetMesh> sheet_of(const physics::ShapeDefinition& shape, int nodes);
 Result<attributes::SheetMesh> sheet_of(const geometry::TriangleMesh& surface, int nodes);
 
-/// A line along the longest axis of a thing that is thin across it, through the middle of its surface at each place, of
-/// `segments` pieces. Round shapes end at the middles of their ends. The error says why it is no line.
+/// A line along the longest axis of a thing that is thin across it, through the centre of its surface at each place,
+/// with `segments` segments. Round shapes end at the centres of their end caps. The error says why it is no line.
 Result<LineForm> line_of(const physics::ShapeDefinition& shape, int segments);
 Result<LineForm> line_of(const geometry::TriangleMesh& surface, int segments);
 

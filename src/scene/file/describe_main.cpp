@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prints the fields of scenes as JSON, for tools/generate_scene_texts.py: a list of types, those that others are made
-// of first.
+// Prints the fields of scenes as JSON, for tools/generate_scene_texts.py: a list of types, each after the types of its
+// members.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// What listed types are called in the Studio.
+// Names of listed types in the Studio.
 template <class Value>
 constexpr const char* name_of = nullptr;
 template <>
@@ -40,7 +40,7 @@ constexpr const char* name_of<Effect> = "Effect";
 template <>
 constexpr const char* name_of<Action> = "Action";
 
-/// Describes a type and all that it is made of.
+/// Describes a type and the types of its members.
 class Describer {
 public:
     template <class Value>
@@ -54,7 +54,7 @@ public:
     json types = json::array();
 
 private:
-    // Of values that are not made of others.
+    // Types of values without members.
     static std::string type_of(const bool*) { return "truth"; }
     static std::string type_of(const int*) { return "whole"; }
     static std::string type_of(const std::uint32_t*) { return "whole"; }

@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view draft_suffix = ".embody-draft";
-/// Names that are tried for one draft: a name is taken only by a draft of a killed program or of another computer.
+/// Maximum number of names tried for one draft: a name is taken only by a draft of a killed program or of another
+/// computer.
 constexpr int draft_attempts = 100;
 
 // A file descriptor that closes itself.
@@ -79,8 +80,8 @@ std::optional<Draft> open_draft(const fs::path& file, mode_t mode) {
         Descriptor out(open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
         if (out.number < 0 && errno == EEXIST) continue;
         if (out.number < 0) return std::nullopt;
-        // A file system without locks has no abandoned drafts removed either. Another program may have taken the draft
-        // for an abandoned one before it was locked; then the next name is tried.
+        // A file system without locks never has abandoned drafts removed. Another program may have taken the draft for
+        // an abandoned one before it was locked; then the next name is tried.
         if (flock(out.number, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) continue;
         if (!has_a_name(out.number)) continue;
         return Draft{std::move(name), std::move(out)};
@@ -92,7 +93,7 @@ std::optional<Draft> open_draft(const fs::path& file, mode_t mode) {
 void remove_if_abandoned(const fs::path& draft) {
     const Descriptor opened(open(draft.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     if (opened.number < 0 || flock(opened.number, LOCK_EX | LOCK_NB) != 0) return;
-    // Its writer may have renamed it meanwhile, which leaves nothing of that name.
+    // If its writer renamed it meanwhile, no file has that name.
     unlink(draft.c_str());
 }
 
@@ -105,7 +106,8 @@ Result<void> write_whole_file(const fs::path& file, std::string_view text) {
     if (problem) return Error{folder.string(), "can't be made: " + problem.message()};
     remove_abandoned_drafts(folder);
 
-    // The draft lies beside the file: a rename across disks would not be whole. It stays locked until it is renamed.
+    // The draft is in the file's folder: a rename across disks would not be atomic. It stays locked until it is
+    // renamed.
     const auto found_mode = mode_of(file);
     if (!found_mode) return found_mode.error();
     const std::optional<mode_t> kept_mode = *found_mode;
@@ -120,7 +122,7 @@ Result<void> write_whole_file(const fs::path& file, std::string_view text) {
         return error;
     }
 
-    // The rename itself is in the folder.
+    // The rename changes the folder, which is synced as well.
     const Descriptor entry(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (entry.number >= 0) fsync(entry.number);
     return {};

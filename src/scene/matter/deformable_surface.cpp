@@ -24,7 +24,7 @@ std::vector<std::array<std::uint32_t, 3>> outer_faces(const DeformableDefinition
     return faces;
 }
 
-// All of a rope's.
+// Nodes of the faces, ascending; all nodes for a rope.
 std::vector<std::uint32_t> nodes_of(const std::vector<std::array<std::uint32_t, 3>>& faces, std::size_t count) {
     std::vector<std::uint32_t> nodes;
     if (faces.empty()) {
@@ -44,7 +44,7 @@ DeformableSurface::DeformableSurface(const DeformableDefinition& definition)
       nodes_(nodes_of(faces_, definition.nodes.size())),
       has_two_sides_(std::holds_alternative<physics::Cloth>(definition.matter)) {}
 
-// Balls along the segments: where the ray comes nearest to one, and nearer than its radius.
+// Intersects the ray with one ball on each segment, where the ray is closest to it.
 std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radius,
                                     std::span<const std::uint32_t> broken, const Ray& ray) {
     const auto& [origin, direction, most] = ray;
@@ -67,8 +67,8 @@ std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radi
     return nearest;
 }
 
-// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face that is met from
-// outside, of cloth from either side.
+// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face: a solid's only from
+// outside, those of cloth from both sides.
 std::optional<SurfaceHit> DeformableSurface::meet(std::span<const Vec3> positions, const Ray& ray) const {
     const auto& [origin, direction, most] = ray;
     std::optional<SurfaceHit> nearest;

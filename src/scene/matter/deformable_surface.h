@@ -13,32 +13,32 @@
 
 namespace embody::scene {
 
-/// A ray of a length.
+/// A ray of finite length.
 struct Ray {
     Vec3 origin, direction;  ///< m; unit
     double most = 0;         ///< m
 };
 
-/// Which nodes and faces of a deformable others can see.
+/// The nodes and faces of a deformable that are visible from outside.
 class DeformableSurface {
 public:
     explicit DeformableSurface(const physics::DeformableDefinition& definition);
 
-    /// A solid and cloth; a rope has none.
+    /// True for a solid and for cloth, false for a rope.
     [[nodiscard]] bool has_faces() const { return !faces_.empty(); }
-    /// Those of the faces, ascending; all of a rope's.
+    /// Nodes of the faces, ascending; all nodes for a rope.
     [[nodiscard]] const std::vector<std::uint32_t>& nodes() const { return nodes_; }
-    /// Where the ray meets a face first, the nodes being at `positions`.
+    /// The first hit of the ray with a face, the nodes being at `positions`.
     [[nodiscard]] std::optional<SurfaceHit> meet(std::span<const Vec3> positions, const Ray& ray) const;
 
 private:
-    std::vector<std::array<std::uint32_t, 3>> faces_;  ///< a solid's outer ones, counter-clockwise from outside, or
-                                                       ///< those of cloth
+    std::vector<std::array<std::uint32_t, 3>>
+        faces_;  ///< outer faces of a solid, counter-clockwise from outside, or all faces of cloth
     std::vector<std::uint32_t> nodes_;
     bool has_two_sides_;
 };
 
-/// Where the ray meets first a rope of this radius along nodes at `positions`. `broken`: its broken segments,
+/// The first hit of the ray with a rope of this radius along nodes at `positions`. `broken`: its broken segments,
 /// ascending.
 std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radius,
                                     std::span<const std::uint32_t> broken, const Ray& ray);

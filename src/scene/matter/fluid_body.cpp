@@ -26,20 +26,20 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     Result<FluidFilling> filling =
         fill_with_fluid(definition.shape, made->matter_.cell_size, definition.particle_budget);
     if (!filling.ok()) return filling.error();
-    // Particles of a fluid that is there already have that one's volume, however many it takes.
+    // Particles that join a fluid have the volume of that fluid's particles, whatever their number.
     made->matter_.cell_size = filling.value().cell_size;
     const double cell = liquids.cell_size(made->matter_, bounds);
     bool is_own = cell == made->matter_.cell_size;
     if (!is_own) {
         const std::size_t most = definition.particle_budget * Liquids::most_particles_ratio;
         Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, most);
-        // What is thinner than its particles would have more volume with those of the other: it stays by itself.
-        constexpr double most_off = 1.08;  // of the cells, so a fourth of the volume
+        // A liquid thinner than the other's particles would get more volume from them: it gets its own fluid.
+        constexpr double most_off = 1.08;  // ratio of cell sizes; 1.26 in volume
         is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(most_off);
         if (!is_own) filling = std::move(joined);
     }
-    // Its own fluid's cells are such that the particles have its volume.
-    constexpr double largest_cell = 1;  // m, of the physics
+    // The cells of a new fluid are chosen so that the particles have the liquid's volume.
+    constexpr double largest_cell = 1;  // m, limit of the physics
     if (filling.value().cell_size > largest_cell)
         return Error{"attributes.particle_budget",
                      "is too small for so much liquid: its cells would be " +
@@ -78,7 +78,7 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
     share_->force = force_;
     if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
 
-    // Those in solids were left out, so that the ids say nothing of the places, but their order is the same.
+    // Particles in solids were left out, so that ids are no indices into `particles`, but the order is the same.
     std::size_t at = 0;
     return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         constexpr double same_place = 1e-4;
@@ -153,7 +153,7 @@ Bounds FluidBody::bounds() const {
     return bounds.is_empty() ? bounds : enlarged(bounds, radius());
 }
 
-// A ray down from the lowest particle of each column of cells.
+// Casts a ray down from the lowest particle of each column of cells.
 std::optional<double> FluidBody::drop_distance(double most) const {
     std::map<std::pair<int, int>, Vec3> lowest;
     for (const Particle& particle : particles()) {
@@ -173,7 +173,7 @@ std::optional<double> FluidBody::drop_distance(double most) const {
     return least;
 }
 
-// The first of balls so large that neighbours at rest overlap.
+// First hit with balls so large that neighbours at rest overlap.
 std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, double most) const {
     const double reach = 1.5 * radius();
     const Bounds box = bounds();

@@ -9,7 +9,7 @@
 
 namespace embody::scene {
 
-/// A body of liquid as particles of a fluid of the physics, which it may share with others of the same matter.
+/// A body of liquid as particles of a fluid of the physics, which may also have bodies of liquid of the same matter.
 class FluidBody final : public MovingPoints {
 public:
     /// `world` and `liquids` outlive it. The error's `where` is an attribute or "shape".
@@ -17,11 +17,11 @@ public:
                                                      const LiquidDefinition& definition);
     ~FluidBody() override;
 
-    /// Particles that were lost are left out.
+    /// Lost particles are left out.
     void read(std::vector<Vec3>& positions) const override;
-    [[nodiscard]] double radius() const override;  ///< of a ball of a particle's volume
+    [[nodiscard]] double radius() const override;  ///< of a ball with a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
-    /// The fluid of the world that its particles are of; null while it is disabled.
+    /// The fluid of the world that its particles belong to; null while it is disabled.
     [[nodiscard]] physics::FluidHandle fluid() const { return share_ ? share_->fluid : physics::FluidHandle{}; }
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
@@ -29,16 +29,16 @@ public:
     [[nodiscard]] Bounds bounds() const override;
     [[nodiscard]] std::optional<double> drop_distance(double most) const override;
     [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double most) const override;
-    /// Liquid runs through a hand: none.
+    /// Liquid flows through a hand: always null.
     [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
     [[nodiscard]] Vec3 linear_velocity() const override;
-    /// Other matter.
+    /// Changes the matter.
     Result<void> set_definition(const PointsDefinition& definition) override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;
     Result<void> apply_force(Vec3 force) override;
-    /// Taken out of the world and put in again as it was.
+    /// Removes the particles from the world, and adds them again in the same state.
     Result<void> set_enabled(bool enabled) override;
 
 private:
@@ -56,10 +56,10 @@ private:
     physics::FluidDefinition matter_;
     Vec3 force_;                       ///< constant, N
     Liquids::Share* share_ = nullptr;  ///< null while it is disabled
-    std::vector<Particle> kept_;       ///< while it is disabled
+    std::vector<Particle> kept_;       ///< state of the particles while it is disabled
 };
 
-/// Null for what is no liquid, and for nothing.
+/// Null for points that are no liquid, and for a null pointer.
 inline const FluidBody* as_liquid(const MovingPoints* points) { return dynamic_cast<const FluidBody*>(points); }
 
 }  // namespace embody::scene

@@ -11,7 +11,7 @@ namespace embody::scene {
 
 namespace {
 
-// Places looked at: so many are a second's work.
+// Maximum number of lattice places: they take about a second.
 constexpr double most_places = 20'000'000;
 
 /// A lattice of `counts` places that fits the bounds.
@@ -29,7 +29,7 @@ struct Lattice {
     [[nodiscard]] double size() const { return counts[0] * counts[1] * counts[2]; }
 };
 
-// Stops where there are more than `most`.
+// Stops at more than `most` places.
 std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, std::size_t most) {
     std::vector<Vec3> places;
     for (double y = 0; y < lattice.counts[1]; ++y) {

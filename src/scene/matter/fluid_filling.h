@@ -11,12 +11,12 @@ namespace embody::scene {
 /// Particles of a liquid that fills a shape.
 struct FluidFilling {
     std::vector<Vec3> places;  ///< in the shape's frame, m
-    double cell_size = 0;      ///< of cells of which each particle is an eighth, m
+    double cell_size = 0;      ///< of the cells, m; a particle has an eighth of a cell's volume
 };
 
-/// Fills a shape with particles for cells of about this size (m), `most` at most: for more the cells are larger. The
-/// particles' volume is the shape's as far as a lattice tells it. The error says why the shape has no inside, or that
-/// it is too flat.
+/// Fills a shape with particles for cells of about this size (m), at most `most` particles: the cells are enlarged
+/// where more would fit. The particles' volume is the shape's to the accuracy of a lattice. The error says why the
+/// shape has no inside, or that it is too flat.
 Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t most);
 
 }  // namespace embody::scene

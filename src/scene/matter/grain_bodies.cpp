@@ -30,7 +30,7 @@ Result<std::unique_ptr<GrainBodies>> GrainBodies::create(physics::World& world, 
     return made;
 }
 
-// Nobody else has the bodies and the shape, so that the world does not refuse.
+// No other body uses the shape, and no other owner destroys the bodies, so that the world does not refuse.
 GrainBodies::~GrainBodies() {
     (void)world_.destroy_bodies(balls_).ok();
     if (!shape_.is_null()) (void)world_.destroy_shape(shape_).ok();

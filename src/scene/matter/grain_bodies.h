@@ -13,7 +13,7 @@ namespace embody::scene {
 /// Grains as balls of the rigid solver, one body each.
 class GrainBodies final : public MovingPoints {
 public:
-    /// `world` outlives them. All or none.
+    /// `world` outlives them. Makes all of them or none.
     static Result<std::unique_ptr<GrainBodies>> create(physics::World& world, const GrainDefinition& definition);
     ~GrainBodies() override;
 

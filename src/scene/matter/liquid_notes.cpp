@@ -17,7 +17,7 @@ namespace {
 
 using Place = std::array<std::int64_t, 3>;
 
-// Cells of that edge in which points lie, each once, sorted.
+// Cells of that edge length that contain points, without duplicates, sorted.
 std::vector<Place> cells_of(const std::vector<Vec3>& points, double edge) {
     std::vector<Place> cells;
     cells.reserve(points.size());

@@ -7,10 +7,10 @@
 
 namespace embody::scene {
 
-/// What is to be said of a liquid that was filled in as this: that it is thinner than its particles. Empty: nothing.
+/// A note on a liquid with this initial state if it is thinner than its particles; else empty.
 std::string note_of(const LiquidDefinition& liquid, const MovingPoints& points);
 
-/// Whether two liquids of different fluids, which do not see each other, have a part of their space in common.
+/// Whether two liquids of different fluids, which do not interact, overlap.
 bool share_space(const MovingPoints& a, const MovingPoints& b);
 
 }  // namespace embody::scene

@@ -11,8 +11,8 @@ using physics::FluidParticles;
 
 namespace {
 
-// The solver's grid spans all of its liquid and goes about so many cells beyond it: bodies so far apart that it would
-// have more cells do not share one.
+// The solver's grid spans all liquid of a fluid with a margin of about this many cells. Bodies of liquid so far apart
+// that the grid would have more cells do not use one fluid.
 constexpr double most_cells = 500'000, margin = 24;
 
 bool is_same_matter(const FluidDefinition& a, const FluidDefinition& b) {
@@ -72,7 +72,7 @@ Result<Liquids::Share*> Liquids::add(const FluidDefinition& matter, std::span<co
     return added;
 }
 
-// Into the list of its fluid; ids given last are the largest.
+// Adds the share to its fluid's list; the newest ids are the largest.
 void Liquids::put(std::unique_ptr<Share> share) {
     auto shared = find(share->fluid);
     if (shared == fluids_.end()) shared = fluids_.insert(shared, Shared{share->fluid, {}, 0});
@@ -80,14 +80,14 @@ void Liquids::put(std::unique_ptr<Share> share) {
     shared->version = 0;
 }
 
-// Out of the list of its fluid, which goes with its last share.
+// Removes the share from its fluid's list, and the list with its last share.
 std::unique_ptr<Liquids::Share> Liquids::take(Share& share) {
     const auto shared = find(share.fluid);
     const auto at = std::ranges::find_if(shared->shares, [&](const auto& other) { return other.get() == &share; });
     std::unique_ptr<Share> taken = std::move(*at);
     shared->shares.erase(at);
     if (!shared->shares.empty()) return taken;
-    // The fluid is in the world, which does not refuse.
+    // The fluid is in the world, so that the world does not refuse.
     (void)world_.destroy_fluid(share.fluid).ok();
     fluids_.erase(shared);
     return taken;
@@ -99,7 +99,7 @@ void Liquids::remove(Share* share) {
     (void)world_.change_fluid(taken->fluid, taken->ids, [](std::uint32_t, Vec3&, Vec3&) { return false; }).ok();
 }
 
-// Of all shares of a fluid at once, in one walk over its particles.
+// Finds the particles of all shares of a fluid in one pass over its particles.
 void Liquids::locate(Shared& shared) {
     const FluidParticles particles = world_.fluid_particles(shared.fluid);
     if (shared.version == particles.version) return;
@@ -127,7 +127,7 @@ Bounds Liquids::bounds_of(const Share& share) {
     return bounds;
 }
 
-// To another fluid, or to one of its own.
+// Moves the particles to another fluid, or to a new one.
 Result<void> Liquids::hand_over(Share& share, FluidHandle to) {
     const Result<physics::FluidPart> part = world_.move_between_fluids(share.fluid, share.ids, to);
     if (!part.ok()) return part.error();
@@ -139,7 +139,7 @@ Result<void> Liquids::hand_over(Share& share, FluidHandle to) {
 }
 
 Result<void> Liquids::set_matter(Share& share, const FluidDefinition& matter) {
-    // The others of its fluid stay as they are.
+    // The other shares of its fluid stay unchanged.
     if (find(share.fluid)->shares.size() > 1) {
         if (Result<void> alone = hand_over(share, {}); !alone.ok()) return alone;
     }
@@ -171,7 +171,7 @@ void Liquids::push(double dt) {
             const std::size_t count = share->force == Vec3{} ? 0 : particles_of(*share).size();
             if (count == 0 || world_.fluid_particles(shared.fluid).is_frozen) continue;
             const Vec3 change = dt / (particle * static_cast<double>(count)) * share->force;
-            // A fluid that is in the world does not refuse.
+            // The fluid is in the world, so that the world does not refuse.
             (void)world_
                 .change_fluid(shared.fluid, share->ids,
                               [change](std::uint32_t, Vec3&, Vec3& velocity) {
@@ -202,7 +202,7 @@ void Liquids::part_far_ones() {
             break;
         }
     }
-    // A fluid that is in the world and not frozen does not refuse.
+    // The fluid is in the world and not frozen, so that the world does not refuse.
     for (Share* share : far) (void)hand_over(*share, {}).ok();
 }
 

@@ -9,50 +9,52 @@
 
 namespace embody::scene {
 
-/// The world's fluids, shared: what is made of the same matter and lies near is one fluid of the physics, so that it
-/// mixes. Liquids of different matter do not see each other (docs/physics/fluids.md, "Entities").
+/// Bodies of liquid in the world's fluids: bodies of the same matter close to each other are in one fluid of the
+/// physics, so that they mix. Liquids of different matter do not interact (docs/physics/fluids.md, "Entities").
 class Liquids {
 public:
-    /// Cells of one solver have one size: bodies of liquid whose own differ by no more than this factor share a fluid.
+    /// A solver has one cell size: bodies of liquid use one fluid if their own cell sizes differ by no more than this
+    /// factor.
     static constexpr double most_ratio = 1.6;
-    /// How many times as many particles one may need with the other's cells: that cubed, rounded up.
+    /// Maximum factor on the number of particles of a body with the other's cells: the ratio cubed, rounded up.
     static constexpr std::size_t most_particles_ratio = 5;
 
     /// `world` outlives this.
     explicit Liquids(physics::World& world) : world_(world) {}
 
-    /// What one body of liquid is of a fluid.
+    /// The particles of one body of liquid in a fluid.
     struct Share {
         physics::FluidHandle fluid;
         physics::FluidIds ids;
-        std::vector<std::uint32_t> places;  ///< see particles_of
-        Vec3 force;                         ///< constant, N, shared among its particles; push() applies it
+        std::vector<std::uint32_t> places;  ///< indices, see particles_of
+        Vec3 force;                         ///< constant, N, distributed over its particles; push() applies it
     };
-    /// Cells that a body of this matter within these bounds has to be filled for: those of the fluid that it would
-    /// join, else its own.
+    /// Cell size for filling a body of this matter within these bounds: that of the fluid that it would join, else its
+    /// own.
     [[nodiscard]] double cell_size(const physics::FluidDefinition& matter, const Bounds& bounds);
-    /// Particles of that cell size at these places (m, world), at rest; those in solids are left out. `matter` says
-    /// neither volume nor velocity. The share is there until it is removed.
+    /// Adds particles of that cell size at these places (m, world), at rest; places in solids are left out. `matter`
+    /// has neither volume nor velocity. The share is valid until remove().
     Result<Share*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
-    /// Takes its particles out of the world.
+    /// Removes its particles from the world.
     void remove(Share* share);
-    /// Where its particles are in the world's fluid_particles(share.fluid), in the order of their ids. Valid until the
+    /// Indices of its particles in the world's fluid_particles(share.fluid), in the order of their ids. Valid until the
     /// world or a share changes.
     const std::vector<std::uint32_t>& particles_of(const Share& share);
-    /// Other matter of cells as large.
+    /// Changes the matter; the cell size must be the same.
     Result<void> set_matter(Share& share, const physics::FluidDefinition& matter);
-    /// After its particles were put elsewhere: it leaves a fluid that it is too far away from, or joins another one.
+    /// Call after its particles were moved: it leaves a fluid that is too far away, or joins another one.
     Result<void> regroup(Share& share);
-    /// Before a step of `dt` seconds: the shares' own forces.
+    /// Before a step of `dt` seconds: applies the shares' own forces.
     void push(double dt);
-    /// After a step: shares that have run far apart no longer share a fluid, whose grid would have to span them all.
+    /// After a step: separates shares that have moved far apart, since the grid of one fluid would have to span them
+    /// all.
     void part_far_ones();
 
 private:
     struct Shared {
         physics::FluidHandle fluid;
         std::vector<std::unique_ptr<Share>> shares;  // by ids
-        std::uint64_t version = 0;                   // of the particles that `places` are of
+        std::uint64_t version = 0;                   // of the particles at the time of `places`
     };
     [[nodiscard]] Shared* to_join(const physics::FluidDefinition& matter, const Bounds& bounds, double most_ratio,
                                   physics::FluidHandle except = {});

@@ -15,7 +15,7 @@ Result<std::unique_ptr<MovingPoints>> made(Result<std::unique_ptr<Points>> point
     return std::unique_ptr<MovingPoints>(std::move(points).value());
 }
 
-// One overload for each definition: one without does not compile.
+// One overload for each definition: a definition without one does not compile.
 struct Maker {
     physics::World& world;
     Liquids& liquids;

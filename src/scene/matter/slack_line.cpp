@@ -8,16 +8,16 @@ namespace embody::scene {
 
 namespace {
 
-// Parabolas in a row between two places: as deep as they are long is one, shallower are many.
+// A row of parabolas between two places: one deep one, or many shallow ones.
 struct Shape {
-    Vec3 aside;  // unit, at right angles to the way
+    Vec3 aside;  // unit, perpendicular to the span
     int waves = 1;
     bool changes = false;  // side from wave to wave
 };
 
 struct Span {
     Vec3 from, way;
-    double length = 0;  // that is wanted, m
+    double length = 0;  // wanted, m
     std::size_t parts = 1;
 };
 
@@ -27,10 +27,10 @@ double wave(const Shape& shape, double t) {
     return (is_back ? -4 : 4) * part * (1 - part);
 }
 
-// Its depth by halving.
+// The arc of the wanted length; its depth is found by bisection.
 std::vector<Vec3> arc_of(const Span& span, const Shape& shape) {
     constexpr int steps = 2000, halvings = 60;
-    std::vector<double> along(steps + 1, 0);  // way along the arc
+    std::vector<double> along(steps + 1, 0);  // path length along the arc
     const auto place = [&](double t, double depth) {
         return span.from + t * span.way + depth * wave(shape, t) * shape.aside;
     };
@@ -59,7 +59,7 @@ std::vector<Vec3> arc_of(const Span& span, const Shape& shape) {
     return arc;
 }
 
-// The first that is free is taken.
+// Candidates for the shape of an arc, in order of preference.
 std::vector<Shape> shapes_of(const Span& span, Vec3 down) {
     const Vec3 ahead = normalized(span.way, {1, 0, 0});
     const Vec3 across = std::fabs(ahead.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
@@ -77,7 +77,7 @@ std::vector<Shape> shapes_of(const Span& span, Vec3 down) {
     return shapes;
 }
 
-// How many of its places are blocked; near its ends it may touch what it is held to.
+// Number of blocked places of the arc, counted up to `most`; its ends may touch the things that hold them.
 std::size_t count_blocked(const std::vector<Vec3>& arc, std::size_t most, const std::function<bool(Vec3)>& is_blocked) {
     std::size_t blocked = 0;
     for (std::size_t k = 1; k + 1 < arc.size() && blocked < most; ++k) {
@@ -93,8 +93,8 @@ double length_between(const SlackRope& rope, std::size_t first, std::size_t last
     return sum;
 }
 
-// Puts what is held to its places, but back on the line what the rope does not reach to. Returns where arcs begin and
-// end.
+// Moves held nodes to their places, but keeps a node on the line if the rope does not reach its place. Returns the
+// nodes at which arcs begin and end.
 std::vector<std::size_t> place_held(const SlackRope& rope, std::vector<Vec3>& line) {
     std::vector<std::size_t> ends{0, line.size() - 1};
     for (const HeldNode& one : rope.held) {

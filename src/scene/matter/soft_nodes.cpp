@@ -17,7 +17,8 @@ using physics::Tie;
 
 namespace {
 
-// Of the greatest extent: how far around a place a hand holds a solid, and cloth or a rope, which it pinches.
+// Radius around a place in which a hand holds nodes, as a fraction of the largest extent: of a solid, and of cloth or a
+// rope, which it pinches.
 constexpr double hand_share = 0.12, pinch_share = 0.03;
 constexpr double hand_radius = 1e-3;  // m; it collides with nothing
 
@@ -31,7 +32,7 @@ Result<std::unique_ptr<SoftNodes>> SoftNodes::create(physics::World& world, cons
     return nodes;
 }
 
-// Whether a body that the rope collides with is there.
+// Whether a body that the rope collides with is at the place.
 bool SoftNodes::is_blocked(Vec3 place) const {
     const double radius = definition().contact_radius;
     const Vec3 half{radius, radius, radius};
@@ -42,7 +43,7 @@ bool SoftNodes::is_blocked(Vec3 place) const {
     });
 }
 
-// A slack rope is not pressed straight between its ends.
+// A slack rope starts in arcs, since on a straight line it would be compressed between its ends.
 Result<void> SoftNodes::hang(std::vector<HeldNode> held) {
     const auto* rope = std::get_if<physics::Rope>(&definition().matter);
     if (!rope || !(rope->slack > 0) || std::exchange(has_hung_, true)) return {};
@@ -56,7 +57,7 @@ Result<void> SoftNodes::hang(std::vector<HeldNode> held) {
 
 SoftNodes::~SoftNodes() {
     let_go();
-    // It is in the world, which does not refuse.
+    // The deformable is in the world, so that the world does not refuse.
     (void)world_.destroy_deformable(handle_).ok();
 }
 
@@ -86,7 +87,7 @@ Holds SoftNodes::holds() const {
     return there;
 }
 
-// What is held by the hand is not held by anything else meanwhile; a clamped node stays clamped, in the hand.
+// A node in the hand is held by nothing else meanwhile; a clamped node stays clamped, to the hand.
 Result<void> SoftNodes::apply_holds() {
     const auto is_in_hand = [this](const auto& hold) {
         return std::ranges::find(held_, hold.node, &Attachment::node) != held_.end();
@@ -119,7 +120,7 @@ Bounds SoftNodes::bounds() const {
     return bounds;
 }
 
-// A ray down from each node of the surface that others do not cover.
+// Casts a ray down from each surface node.
 std::optional<double> SoftNodes::drop_distance(double most) const {
     const auto positions = world_.node_positions(handle_);
     const double clearance = definition().contact_radius;
@@ -154,7 +155,7 @@ BodyHandle SoftNodes::hold(Vec3 position) {
     hand.shape = hand_shape_ = *shape;
     hand.position = position;
     hand.mass.mass = mass();
-    // As hard to turn as a ball of the thing's mass and half its size.
+    // Moment of inertia as of a ball of the thing's mass and half its size.
     const double spread = 0.1 * hand.mass.mass.value_or(1) * length_squared(0.5 * size);
     hand.mass.inertia = Mat3::diagonal({spread, spread, spread});
     hand.gravity_factor = 0;
@@ -178,7 +179,7 @@ BodyHandle SoftNodes::hold(Vec3 position) {
 void SoftNodes::let_go() {
     held_.clear();
     if (!hand_.is_null()) {
-        // Both are in the world, which does not refuse.
+        // The nodes and bodies are in the world, so that the world does not refuse.
         (void)apply_holds().ok();
         (void)world_.destroy_body(hand_).ok();
         hand_ = {};

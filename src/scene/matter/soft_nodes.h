@@ -12,14 +12,14 @@
 
 namespace embody::scene {
 
-/// What holds the nodes of what is deformable, besides pins.
+/// Holds of a deformable's nodes, in addition to pins.
 struct Holds {
     std::vector<physics::Attachment> attachments;
     std::vector<physics::Clamp> clamps;
     std::vector<physics::Tie> ties;  ///< of cloth and ropes
 };
 
-/// The nodes of a deformable of the physics: they carry what is drawn.
+/// The nodes of a deformable of the physics; they deform the drawn form.
 class SoftNodes final : public MovingPoints {
 public:
     /// `world` outlives them.
@@ -29,13 +29,13 @@ public:
 
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
-    /// What carries the drawn form, at rest.
+    /// The mesh that deforms the drawn form, at rest.
     [[nodiscard]] const physics::DeformableDefinition& definition() const { return *world_.deformable(handle_); }
-    /// For ties to it.
+    /// Handle for ties to it.
     [[nodiscard]] physics::DeformableHandle handle() const { return handle_; }
-    /// Of a rope: segment k is between the points k and k + 1.
+    /// Broken segments of a rope: segment k is between the points k and k + 1.
     [[nodiscard]] std::vector<std::uint32_t> broken_segments() const { return world_.broken_segments(handle_); }
-    /// Of the entity's frame.
+    /// Pose of the entity's frame.
     [[nodiscard]] Transform pose() const { return world_.pose(handle_); }
     [[nodiscard]] Vec3 linear_velocity() const override;
     [[nodiscard]] Vec3 angular_velocity() const override;
@@ -49,13 +49,13 @@ public:
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go() override;
     Result<void> set_definition(const PointsDefinition& definition) override;
-    /// Where a slack rope begins, between the nodes that pins hold at these places: as arcs that no body stands in.
-    /// Only once, when everything around it is there.
+    /// Initial arcs of a slack rope between the nodes that pins hold at these places, clear of bodies. Call only once,
+    /// when everything around it is there.
     Result<void> hang(std::vector<HeldNode> held);
-    /// Holds some to bodies and to other deformables, and a rope's directions at bodies or where it is pinned, besides
-    /// those that a hand holds.
+    /// Holds nodes by bodies and by other deformables, and a rope's directions at bodies or pins, in addition to the
+    /// holds of a hand.
     Result<void> attach(Holds holds);
-    /// To what is still there; not those of a hand.
+    /// The holds whose bodies and deformables still exist; not those of a hand.
     [[nodiscard]] Holds holds() const;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
@@ -79,7 +79,7 @@ private:
     physics::ShapeHandle hand_shape_;
 };
 
-/// Null for grains, liquids, and nothing.
+/// Null for grains, for liquids, and for a null pointer.
 inline SoftNodes* as_soft(MovingPoints* points) { return dynamic_cast<SoftNodes*>(points); }
 inline const SoftNodes* as_soft(const MovingPoints* points) { return dynamic_cast<const SoftNodes*>(points); }
 

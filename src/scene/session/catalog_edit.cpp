@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// An event names at most this many models; of more, any may have changed.
+/// An event names at most this many models; if more changed, it names none.
 constexpr std::size_t most_told_models = 1000;
 
 std::string attribute_text(const std::vector<std::string>& names) {
@@ -34,7 +34,7 @@ std::string label_text(const std::string& command, const std::vector<std::string
     return act + attribute_text(names) + " of " + of;
 }
 
-// What the open scene has of these models is made anew; what a run has of them goes on from where it is.
+// Makes everything that the open scene has of these models again; in a run it goes on from its present state.
 void take_up(SessionState& state, const std::set<std::string>& keys) {
     for (const std::string& key : keys) state.definitions.forget(key);
     state.simulation_is_pristine = false;
@@ -50,7 +50,7 @@ void tell_models(SessionState& state, json event, const std::set<std::string>& k
     state.tell(std::move(event));
 }
 
-// After an act of the client whose command is in hand.
+// Updates the scene and tells all clients after an act of the client whose command is being executed.
 void follow(SessionState& state, const ChangeReport& report) {
     std::set<std::string> keys;
     for (const catalog::ChangedModel& model : report.models) keys.insert(model.key);
@@ -70,7 +70,7 @@ catalog::ChangeOptions watched(const SessionState& state, catalog::ChangeOptions
     return options;
 }
 
-// Takes back a batch and tells all; an act that some values refuse is an error, as undo is all or nothing.
+// Reverts a batch and tells all clients; if some values are refused, that is an error, as undo is all or nothing.
 Result<ChangeReport> take_back(SessionState& state, std::int64_t batch) {
     if (!state.catalog) return Error{"catalog", "no model database is open", "start with --database FILE"};
     state.catalog->set_session(acting_session(state));
@@ -88,7 +88,7 @@ Result<ChangeReport> take_back(SessionState& state, std::int64_t batch) {
     return report;
 }
 
-// Refused because of what happened to the batch; a database that is busy, or a stop, is another matter.
+// Whether the refusal is permanent, because of later changes to the batch; a busy database or a stop is not.
 bool is_for_ever(const Error& error) { return error.where.starts_with("batch "); }
 
 }  // namespace
@@ -120,8 +120,8 @@ Result<ChangeReport> change_models(SessionState& state, const catalog::Catalog::
 }
 
 Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
-    // What undo or redo would take next goes that way. Another is an edit of its own: those before it stay in their
-    // order, and are reached when it has been taken back itself.
+    // The batch of the next undo or redo is reverted as that undo or redo. Another batch is reverted by a new edit:
+    // edits before it keep their order, and undo reaches them after the new edit itself was undone.
     const Edit* last = state.history.undoable();
     const Edit* next = state.history.redoable();
     const bool is_last = last && last->catalog && last->catalog->back == batch;
@@ -178,7 +178,7 @@ bool follow_changes_of_others(SessionState& state) {
             if (std::find(names.begin(), names.end(), change.attribute) == names.end())
                 names.push_back(change.attribute);
         }
-        // Of very many only the first are told: then all that the scene has are looked at again.
+        // Only the first models of very many are named: then all models of the scene are checked.
         std::set<std::string> meant = keys;
         if (keys.size() < batch.models) {
             for (const EntityIndex index : state.simulation->entities()) {

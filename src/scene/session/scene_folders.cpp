@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of a file without ".json", bytes: file systems take 255, and a draft's name is longer.
+/// Maximum length of a file's name without ".json", bytes: file systems allow 255, and a draft's name is longer.
 constexpr std::size_t longest_stem = 200;
-/// What of a longer title goes into the name of its autosave.
+/// Number of bytes of a longer title in the name of its autosave.
 constexpr std::size_t kept_of_long_title = 150;
 const std::string autosave_prefix = "autosave/";
 const std::string demo_prefix = "demo/";
@@ -33,14 +33,14 @@ std::string utc_text(fs::file_time_type time) {
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
-// Whether a file's name may hold the byte in every file system and shell.
+// Whether a file's name may contain the byte in every file system and shell.
 bool is_plain(unsigned char byte) {
     return std::isalnum(byte) != 0 || byte >= 0x80 ||
            std::string_view(" -_().").find(static_cast<char>(byte)) != std::string_view::npos;
 }
 
-// A name as a file's stem, the other way round of decoded(): what is not plain becomes "%" and two digits, and so does
-// a dot at the front, which would hide the file. Different names are different stems.
+// A name as a file's stem, the inverse of decoded(): bytes that are not plain become "%" and two digits, and so does a
+// dot at the front, which would hide the file. Different names have different stems.
 std::string encoded(const std::string& name) {
     static constexpr char digits[] = "0123456789ABCDEF";
     std::string stem;
@@ -68,7 +68,7 @@ std::string decoded(const std::string& stem) {
     return name;
 }
 
-// A file that a person put there may have a stem that encoded() never makes, such as "50% off" or "a:b".
+// A stem made by a person may be one that encoded() never makes, such as "50% off" or "a:b".
 bool is_stem(const std::string& name) {
     return !name.empty() && name.size() <= 250 && name.front() != '.' && name.find('/') == std::string::npos &&
            name.find('\0') == std::string::npos;
@@ -79,10 +79,10 @@ bool is_file(const fs::path& file) {
     return fs::is_regular_file(file, ignored);
 }
 
-// Where a scene of that name lies or is to lie. A file that a person named otherwise is found by its own stem.
+// The file of a scene of that name, existing or not. A file with a stem made by a person is found by that stem.
 fs::path file_in(const fs::path& folder, const std::string& name) {
     fs::path file = folder / (encoded(name) + ".json");
-    const bool is_ours = encoded(decoded(name)) == name;  // as a stem it is that of a name, maybe of another one
+    const bool is_ours = encoded(decoded(name)) == name;  // as a stem it is the code of a name, maybe of another one
     if (is_ours || !is_stem(name) || is_file(file)) return file;
     fs::path named_otherwise = folder / (name + ".json");
     return is_file(named_otherwise) ? named_otherwise : file;
@@ -95,7 +95,7 @@ std::string name_in(const fs::path& file) {
     return encoded(name) == stem ? name : stem;
 }
 
-// Stops reading when the title is known: the writer puts it at the top, and scenes can be large.
+// Stops reading at the title: the writer puts it at the top, and scenes can be large.
 class TitleFinder : public nlohmann::json_sax<nlohmann::json> {
 public:
     std::string title;
@@ -133,7 +133,7 @@ std::string title_of(const fs::path& file) {
     return finder.title.empty() ? file.stem().string() : finder.title;
 }
 
-// The scenes of a folder by name; a folder that is not there has none.
+// The scenes of a folder by name; none for a folder that does not exist.
 std::vector<ListedScene> list_folder(const fs::path& folder, const std::string& kind, const std::string& prefix) {
     std::vector<ListedScene> scenes;
     std::error_code problem;
@@ -173,8 +173,8 @@ fs::path autosave_file(const SessionOptions& options, const std::string& name) {
     fs::path file = file_in(folder, name);
     const std::string stem = file.stem().string();
     if (stem.size() <= longest_stem) return file;
-    // A title may be of any length: its beginning up to a whole character, and what tells it from others. encoded()
-    // never makes a "%~".
+    // A title may be of any length: the stem has its beginning, up to a whole character, and a part that tells it from
+    // others. encoded() never makes a "%~".
     std::size_t kept = kept_of_long_title;
     while ((static_cast<unsigned char>(stem[kept]) & 0xC0) == 0x80) --kept;
     StateHash hash;

@@ -18,19 +18,19 @@ struct ListedScene {
     std::string modified;  ///< UTC, e.g. "2026-11-20T13:00:00Z"
 };
 
-/// Without spaces around it; "Untitled" where nothing is left.
+/// The name without spaces around it; "Untitled" if nothing is left.
 std::string trimmed_name(const std::string& name);
 
-/// Saved ones first, then what an autosave left that is newer than its saved scene, then demos; each by name.
+/// Saved scenes first, then autosaves that are newer than their saved scenes, then demos; each by name.
 std::vector<ListedScene> list_scenes(const SessionOptions& options);
-/// A saved scene, else the demo of that name; "autosave/NAME" and "demo/NAME" name theirs alone.
+/// A saved scene, else the demo of that name; "autosave/NAME" and "demo/NAME" select only these.
 Result<std::filesystem::path> find_scene(const SessionOptions& options, const std::string& name);
 
-/// Where scenes of a name lie. Different names are different files: what a file system or a shell could take amiss is
-/// written as "%" and two hexadecimal digits ("a/b" in "a%2Fb.json"). Error: the name is too long, or begins as those
-/// of demos and autosaves do.
+/// The file of a scene of that name. Different names have different files: bytes that a file system or a shell could
+/// misread are written as "%" and two hexadecimal digits ("a/b" in "a%2Fb.json"). Error: the name is too long, or
+/// begins with the prefix of demos or autosaves.
 Result<std::filesystem::path> saved_file(const SessionOptions& options, const std::string& name);
-/// The same of its autosave, whose name may be a title of any length.
+/// The file of its autosave; the name may be a title of any length.
 std::filesystem::path autosave_file(const SessionOptions& options, const std::string& name);
 /// The name by which a file of one of the folders is found.
 std::string name_of_scene(const std::filesystem::path& file);

@@ -48,7 +48,7 @@ Session::Session() = default;
 Session::~Session() = default;
 
 Result<std::unique_ptr<Session>> Session::create(catalog::Catalog* catalog, const SessionOptions& options) {
-    // What killed programs left half written.
+    // Drafts that killed programs left half written.
     for (const std::filesystem::path& folder : {options.saved_scenes, options.saved_scenes / "autosave"})
         remove_abandoned_drafts(folder);
     std::unique_ptr<Session> session(new Session);
@@ -102,7 +102,7 @@ json Session::statistics() const {
 
     const Activity activity = state_->simulation->activity();
 
-    // Simulated over real time, of the last steps.
+    // Simulated time over real time of the last steps.
     double factor = 0;
     if (state_->play_state == PlayState::playing && state_->step_times.size() > 1) {
         const std::chrono::duration<double> passed = state_->step_times.back() - state_->step_times.front();

@@ -22,7 +22,7 @@ namespace embody::scene {
 struct Events {
     std::vector<nlohmann::json> messages;  ///< in order, for every client
     bool all_poses = false;                ///< send every entity's pose again
-    std::size_t actions = 0;               ///< carried out; of very many the later ones have no message
+    std::size_t actions = 0;               ///< number carried out; of very many the later ones have no message
 };
 
 /// One entity's state for a state frame.
@@ -30,43 +30,44 @@ struct EntityState {
     EntityIndex entity = 0;
     Transform pose;
     std::uint8_t state = 3;                ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
-    const MovingPoints* points = nullptr;  ///< of what is not one body; valid until the next command or step
+    const MovingPoints* points = nullptr;  ///< of an entity that is not one body; valid until the next command or step
 };
 
-/// Numbers a connection for as long as the program runs; 0: the program itself.
+/// Number of a connection, unique while the program runs; 0: the program itself.
 using ClientId = std::uint64_t;
 
 struct SessionOptions {
     std::filesystem::path saved_scenes;      ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
     std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
-    std::function<bool()> stop_wanted = {};  ///< asked between the steps of simulation.step; true ends it early
-    /// Told now and then how far the command in hand is; false ends it, and nothing is changed. May be empty.
+    std::function<bool()> stop_wanted = {};  ///< called between the steps of simulation.step; true ends it early
+    /// Called at intervals with the progress of the running command; false ends it, and nothing is changed. May be
+    /// empty.
     std::function<bool(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not
-/// the transport's. Used by one thread.
+/// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md except those
+/// of the transport. Used by one thread.
 class Session {
 public:
-    /// `catalog` may be null (scenes of primitives only); it outlives the session.
+    /// `catalog` may be null (only scenes of primitives); it outlives the session.
     static Result<std::unique_ptr<Session>> create(catalog::Catalog* catalog, const SessionOptions& options);
     ~Session();
 
-    /// Carries out a command of docs/protocol.md for a client; the value is its `result`.
+    /// Executes a command of docs/protocol.md for a client; the value is its `result`.
     Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params, ClientId client = 0);
     /// A client has left.
     void forget_client(ClientId client);
-    /// Takes up what other programs changed in the catalogue, and tells whether there was any; for a timer.
+    /// Applies other programs' changes of the catalogue, and returns whether there were any; for a timer.
     bool follow_catalog();
-    /// What happened since the last call.
+    /// Events since the last call.
     Events take_events();
 
     [[nodiscard]] const Document& document() const;
     [[nodiscard]] bool playing() const;
     [[nodiscard]] double time_step() const;
-    /// One step of the simulation, with actions; pauses where an action says so.
+    /// One step of the simulation, with actions; pauses if an action requests it.
     void step();
-    /// Every entity's pose and state now (spawned ones too).
+    /// Pose and state of every entity now (spawned ones too).
     void read_states(std::vector<EntityState>& states) const;
     /// World::debug_draw() of the simulation.
     physics::DebugDrawCount debug_draw(physics::DebugDraw& draw, const physics::DebugDrawOptions& options) const;
@@ -76,8 +77,8 @@ public:
     [[nodiscard]] nlohmann::json statistics() const;
     /// Writes the document beside the saved scenes if it changed since the last call; for a timer.
     Result<void> autosave();
-    /// The same from another thread, while a command or step is in hand that does not end: the document as it was
-    /// before, if it is not on disk.
+    /// The same from another thread, while a command or step hangs: the document as it was before it, if it is not on
+    /// disk.
     Result<void> rescue();
 
 private:

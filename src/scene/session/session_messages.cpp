@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a session tells its clients: how the simulation goes, and what of the document has changed.
+// Messages of a session to its clients: progress of the simulation, and changes of the document.
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -15,10 +15,11 @@ using nlohmann::json;
 
 namespace {
 
-/// Of one command or step: a hundred thousand steps with actions on every contact would fill the memory.
+/// Maximum number of actions told for one command or step: a hundred thousand steps with actions on every contact would
+/// fill the memory.
 constexpr std::size_t most_told_actions = 1000;
 
-// What to say of each limit of a step.
+// Message for each limit of a step.
 struct LimitText {
     physics::StepLimit limit;
     const char* text;
@@ -62,7 +63,7 @@ json SessionState::simulation_event() const {
 }
 
 void SessionState::tell_step() {
-    // What actions did.
+    // Effects of actions.
     for (const EntityIndex index : simulation->spawned()) {
         const Entity* entity = simulation->definition(index);
         if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
@@ -86,12 +87,12 @@ void SessionState::tell_step() {
               {"segment", broke.segment},
               {"tension", broke.tension},
               {"position", vector_to_json(broke.position)}});
-        // Of one that goes on breaking the first place says enough.
+        // A rope may break at more places: the first message is enough.
         if (told_problems.insert(who + " broke").second)
             tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
-    // The same complaint once a run.
+    // Each problem is told once in a run.
     for (const Error& problem : simulation->problems())
         if (told_problems.insert(problem.message()).second) tell_message("warning", problem.message());
     const std::uint32_t limits = simulation->world().last_report().limits;
@@ -143,7 +144,7 @@ json SessionState::change_json(const Change& change) const {
         if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
         return {{"op", "action"}, {"action", action_to_json(*action->after)}};
     }
-    // The heading's fields and those of its settings side by side, as scene.settings takes them.
+    // The heading's fields with those of its settings beside them, as scene.settings reads them.
     json heading = json::object();
     write_all_fields<Heading>(heading, document);
     json settings = std::move(heading["settings"]);

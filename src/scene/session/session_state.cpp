@@ -71,17 +71,17 @@ void SessionState::step() {
 // Edits
 // ----------------------------------------------------------------------------------------------------------------
 
-// Carries an entity's change, already in the document, over to the simulation.
+// Applies an entity's change, already in the document, to the simulation.
 Result<void> SessionState::sync_entity(const EntityChange& change) {
     if (!change.before) return simulation->add(*document.find(change.after->index));
     const EntityIndex index = change.before->index;
-    // An action may have taken it away.
+    // An action may have removed it.
     if (!simulation->contains(index)) return {};
     if (!change.after) return simulation->remove(index);
     const Entity& entity = *document.find(index);
     if (play_state == PlayState::stopped) return simulation->update(entity, false);
 
-    // In a run it goes on from where it is, but for what was changed on purpose.
+    // In a run the entity keeps its present state, except for the fields of this change.
     if (Result<void> updated = simulation->update(entity, true); !updated.ok()) return updated;
     if (change.before->pose != change.after->pose)
         if (Result<void> moved = simulation->set_pose(index, entity.pose); !moved.ok()) return moved;
@@ -109,7 +109,7 @@ Result<void> SessionState::sync(const Change& change) {
         return joint->after ? simulation->add_joint(*joint->after) : Result<void>{};
     }
 
-    // A thing that is moved by hand stands still there.
+    // A thing that is moved by hand is at rest at its new pose.
     const auto& pose = std::get<PoseChange>(change);
     if (!simulation->contains(pose.index)) return {};
     if (Result<void> moved = simulation->set_pose(pose.index, pose.after); !moved.ok()) return moved;
@@ -124,7 +124,7 @@ void SessionState::put_in_document(const std::vector<Change>& changes, bool is_i
     changes_in_hand = is_in_hand ? &changes : nullptr;
 }
 
-// Entities that go in a row leave the simulation together; their number.
+// Removes entities that go in a row from the simulation together; returns their number.
 std::size_t SessionState::sync_removals(std::span<const Change> changes) {
     std::vector<EntityIndex> gone;
     for (const Change& change : changes) {
@@ -138,7 +138,7 @@ std::size_t SessionState::sync_removals(std::span<const Change> changes) {
     return gone.size();
 }
 
-// All changes or none.
+// Applies all changes or none.
 Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
     put_in_document(changes, true);
     std::size_t synced = 0;
@@ -159,13 +159,13 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
         return done;
     }
     put_in_document(reversed(changes), false);
-    // The one that failed has changed nothing in the simulation.
+    // The change that failed has changed nothing in the simulation.
     while (synced-- > 0) (void)sync(reversed(changes[synced])).ok();
     if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
     return done;
 }
 
-// Undo and redo lead to a document that was there before; no state of a run may stand in the way.
+// Undo and redo lead to a document that existed before; no state of a run may prevent it.
 Result<void> SessionState::insist_on_changes(const std::vector<Change>& changes) {
     Result<void> done = run_changes(changes);
     if (done.ok() || play_state == PlayState::stopped) return done;

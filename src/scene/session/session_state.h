@@ -24,8 +24,8 @@ namespace embody::scene {
 
 enum class PlayState : std::uint8_t { stopped, playing, paused };
 
-/// What the commands of a session work on: the document with its history, its simulation, and what clients have not
-/// heard yet.
+/// State of a session that its commands work on: the document with its history, its simulation, and events that clients
+/// have not got yet.
 struct SessionState {
     SessionState(catalog::Catalog* catalog, SessionOptions options);
 
@@ -34,8 +34,8 @@ struct SessionState {
     std::shared_ptr<FormCache> forms = std::make_shared<FormCache>();  ///< of all simulations of this session
     EntityDefinitions definitions;
 
-    /// Held while the document, its name, revisions and history change: another thread may look at them to rescue what
-    /// is not saved. Never for long.
+    /// Locked while the document, its name, revisions and history change: another thread may read them to save unsaved
+    /// work. Never locked for long.
     std::mutex rescue_mutex;
     const std::vector<Change>* changes_in_hand = nullptr;  ///< in the document but not in the simulation yet
 
@@ -46,9 +46,9 @@ struct SessionState {
     std::uint64_t autosaved_revision = 0;
     History history;
 
-    /// Always there: while stopped it holds the document's poses, for picking and placing.
+    /// Never null: while stopped it holds the document's poses, for picking and placing.
     std::unique_ptr<Simulation> simulation;
-    bool simulation_is_pristine = true;  ///< made of the document as it is, in one go
+    bool simulation_is_pristine = true;  ///< made in one go from the present document
     PlayState play_state = PlayState::stopped;
     std::optional<Grab> grab;
     std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
@@ -58,23 +58,23 @@ struct SessionState {
 
     Events events;
 
-    ClientId client = 0;                           ///< whose command is in hand
-    std::map<ClientId, std::string> client_names;  ///< of those who told their name
+    ClientId client = 0;                           ///< whose command is being executed
+    std::map<ClientId, std::string> client_names;  ///< of clients that sent their name
 
-    /// Does the edit to document and simulation and tells clients. On failure all is as before.
+    /// Applies the edit to document and simulation and tells clients. On failure nothing has changed.
     Result<void> commit(Edit edit);
-    /// Remembers an edit that has been done.
+    /// Adds an edit that was done to the history.
     void record(Edit edit);
-    /// The label of what was undone or redone; empty: nothing.
+    /// The label of the edit that was undone or redone; empty: there was none.
     Result<std::string> undo();
     Result<std::string> redo();
     /// An edit with the document's present next_index in it.
     [[nodiscard]] Edit start_edit(std::string label) const;
 
-    /// What is on disk is the document as it is now.
+    /// The document as it is now is on disk.
     void mark_autosaved();
 
-    /// Takes another document, without history. On failure the old one stays.
+    /// Opens another document, without history. On failure the old one stays.
     Result<void> open(Document opened, std::string opened_name);
     /// A new simulation of the document.
     Result<void> rebuild_simulation();
@@ -89,7 +89,7 @@ struct SessionState {
 
     /// The document's entity, or an error that names the field.
     Result<const Entity*> entity(EntityIndex index, const std::string& where) const;
-    /// The entity's name as a label says it, or "3 entities".
+    /// The entity's name for a label, or "3 entities".
     [[nodiscard]] std::string called(const std::vector<EntityIndex>& indices) const;
 
 private:

@@ -47,7 +47,7 @@ bool ActionRunner::matches(const Target& target, EntityIndex entity) const {
     return false;
 }
 
-// Whom the effect changes: "any" means who set the action off, or everything where nobody did.
+// Entities that the effect changes: "any" means the sender, or everything where there is none.
 void ActionRunner::run(const Action& action, EntityIndex sender, EntityIndex other) {
     progress_[action.id].has_fired = true;
     if (std::holds_alternative<Pause>(action.effect)) {
@@ -59,7 +59,7 @@ void ActionRunner::run(const Action& action, EntityIndex sender, EntityIndex oth
     if (std::holds_alternative<Spawn>(action.effect)) {
         const std::vector<EntityIndex> like =
             by_sender ? std::vector<EntityIndex>{sender} : world_.templates(action.receiver);
-        // One copy a firing, also where a name or category means several.
+        // One copy each time the action fires, also where a name or category means several entities.
         if (!like.empty()) return run_on(action, sender, like.front());
         problems.push_back(
             {"action \"" + action.name + "\"", "there is nothing to spawn: the receiver names no entity"});
@@ -95,7 +95,7 @@ void ActionRunner::run_timed(const Action& action, const AtTime& at, double time
     Progress& progress = progress_[action.id];
     if (progress.next_time > time + clock_error || (!at.repeat_every && progress.has_fired)) return;
     run(action, 0, 0);
-    // At most once a step, however short the period and however long ago it was due.
+    // At most once a step, however short the period and however long the action has been due.
     if (!at.repeat_every) return;
     const double period = std::max(*at.repeat_every, 1e-5);
     const double missed = std::floor((time + clock_error - progress.next_time) / period);
@@ -145,7 +145,7 @@ void ActionRunner::run_contacts(const Action& action, const Target& other, Conta
     }
 }
 
-// Entering needs a first look from outside: what starts inside has not entered.
+// An entity enters only after it was seen outside: an entity that starts inside has not entered.
 void ActionRunner::run_volume(const Action& action, const OnEnterVolume& enter) {
     const std::vector<EntityIndex> entities = world_.entities();
     for (const EntityIndex entity : entities) {

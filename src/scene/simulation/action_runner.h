@@ -15,11 +15,11 @@
 
 namespace embody::scene {
 
-/// Decides when actions are due and carries them out on a simulation. Everything happens in the order of the actions'
-/// ids, and for one action in the order of what happened, so that a run repeats bit for bit.
+/// Decides when actions are due and carries them out on a simulation. The order is that of the actions' ids, and for
+/// one action that of the events, so that a run is bitwise reproducible.
 class ActionRunner {
 public:
-    /// What an effect does to the world; the simulation provides it.
+    /// Functions by which effects change the world; the simulation provides them.
     struct World {
         std::function<const std::vector<EntityIndex>&()> entities;
         std::function<const Entity*(EntityIndex)> definition;
@@ -28,20 +28,20 @@ public:
         std::function<Result<void>(EntityIndex, const Effect&)> change;
         /// A copy of the document's entity `like` at the spawn's pose; its new index.
         std::function<Result<EntityIndex>(EntityIndex like, const Spawn&)> spawn;
-        /// Document's entities that the target means, whether or not they are in the world.
+        /// Entities of the document that the target names, whether or not they are in the world.
         std::function<std::vector<EntityIndex>(const Target&)> templates;
     };
 
     ActionRunner(std::vector<Action> actions, World world);
 
-    /// Actions due by the clock or by signals since the last call.
+    /// Carries out actions that are due by the clock or by signals since the last call.
     void before_step(double time);
-    /// Actions set off by what the step did. The events are copies of the world's: effects change it.
+    /// Carries out actions that the step triggered. The events are copies of the world's: effects change it.
     void after_step(const std::vector<physics::ContactEvent>& contacts, const std::vector<physics::SleepEvent>& sleeps);
     std::size_t signal(const std::string& key, const std::string& button);
     void set_actions(std::vector<Action> actions);
 
-    std::vector<ActionFired> fired;  ///< since they were last cleared
+    std::vector<ActionFired> fired;  ///< since the last call that cleared the list
     std::vector<Error> problems;
     bool pause_requested = false;
 
@@ -49,7 +49,7 @@ private:
     struct Progress {
         bool has_fired = false;
         double next_time = 0;                 ///< of a timed action
-        std::set<EntityIndex> known, inside;  ///< of a volume: seen before, and in it
+        std::set<EntityIndex> known, inside;  ///< of a volume: entities seen before, and those inside
     };
 
     [[nodiscard]] bool matches(const Target& target, EntityIndex entity) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A point of a body is pulled as by a damped harmonic oscillator: a = ω² (target − p) − 2 ω v, critical damping. The
-// force is K⁻¹ a with K = 1/m − [r]× I⁻¹ [r]× (the inverse of the mass that the point seems to have; Baraff and Witkin,
-// 1998), so that a long lever arm is not kicked.
+// force is K⁻¹ a with K = 1/m − [r]× I⁻¹ [r]× (the inverse of the effective mass of the point; Baraff and Witkin,
+// 1998), so that a long lever arm gets no jerk.
 #include "scene/simulation/grab.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double frequency = 12;               // ω, rad/s: reaches the target in a third of a second
 constexpr double spin_damping = 8;             // 1/s
-constexpr double greatest_acceleration = 400;  // m/s²: a far target pulls, it does not shoot
+constexpr double greatest_acceleration = 400;  // m/s²: limits the pull towards a far target
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void pull(physics::World& world, const Grab& grab) {
     const Vec3 spin = world.angular_velocity(grab.body);
     const Vec3 velocity = world.linear_velocity(grab.body) + cross(spin, arm);
 
-    // The acceleration that the spring gives at the end of the step.
+    // The acceleration by the spring at the end of the step.
     const double h = world.settings().time_step;
     const double stiffness = frequency * frequency;
     const double damping = 2 * frequency + stiffness * h;
@@ -33,7 +33,7 @@ void pull(physics::World& world, const Grab& grab) {
     const double size = length(wanted);
     if (size > greatest_acceleration) wanted *= greatest_acceleration / size;
 
-    // The force that does so on this body at this arm.
+    // The force with that acceleration on this body at this lever arm.
     const double mass = world.mass(grab.body);
     const Mat3 inertia = rotate_tensor(pose.rotation, world.inertia(grab.body));
     const Mat3 r = skew(arm);
@@ -45,7 +45,7 @@ void pull(physics::World& world, const Grab& grab) {
     const Vec3 force = solve(mobility, wanted - free);
     if (!is_finite(force) || !is_finite(torque)) return;
 
-    // The handle was checked, the numbers are finite: nothing here is refused.
+    // The handle was checked, the numbers are finite: the world refuses nothing here.
     (void)world.wake(grab.body).ok();
     (void)world.apply_force(grab.body, force, point).ok();
     (void)world.apply_angular_impulse(grab.body, torque * h).ok();

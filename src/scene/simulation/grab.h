@@ -13,8 +13,8 @@ struct Grab {
     Vec3 target;       ///< world
 };
 
-/// Pulls for the next step. Stable for any mass, lever arm and step: the spring and damper are those of the point's own
-/// effective mass, taken at the step's end (implicit Euler).
+/// Pulls in the next step. Stable for any mass, lever arm and step: spring and damper use the effective mass of the
+/// point and are evaluated at the step's end (implicit Euler).
 void pull(physics::World& world, const Grab& grab);
 
 }  // namespace embody::scene

@@ -86,7 +86,7 @@ struct Recorder::State {
     Result<void> write_held();
 };
 
-// A line is handed to the system together with its end, so that a killed program leaves no half of one.
+// A line is written together with its line end, so that a killed program leaves no half line.
 Result<void> Recorder::State::write_held() {
     std::size_t written = 0;
     while (written < held.size()) {
@@ -138,7 +138,7 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::filesystem::path& 
 Result<void> Recorder::sample(const Simulation& simulation) {
     const physics::World& world = simulation.world();
     const physics::StepReport& report = world.last_report();
-    // Due when the time has reached sample number `samples`; half a step's slack against rounding.
+    // Due when the time has reached sample number `samples`, with a tolerance of half a step for rounding.
     const double slack = 0.5 * world.settings().time_step;
     if (report.time + slack < static_cast<double>(state_->samples) / state_->options.rate) return {};
     state_->samples = static_cast<std::uint64_t>((report.time + slack) * state_->options.rate) + 1;

@@ -12,23 +12,23 @@
 namespace embody::scene {
 
 struct RecordingOptions {
-    double rate = 60;       ///< samples a simulated second, > 0; never more than one a step
+    double rate = 60;       ///< samples per simulated second, > 0; at most one per step
     bool contacts = false;  ///< contact points with their impulses
     bool energy = false;    ///< total energy, linear and angular momentum
 };
 
-/// Writes what happens as JSON lines: a header, then one line a sample (docs/scene-format.md, "Recordings"). Each line
-/// is whole or not there, whatever ends the program.
+/// Writes a recording as JSON lines: a header, then one line per sample (docs/scene-format.md, "Recordings"). Each line
+/// is whole or missing, however the program ends.
 class Recorder {
 public:
-    /// Fails, with the file's name, where it cannot be written.
+    /// The error has the file's name, where it cannot be written.
     static Result<std::unique_ptr<Recorder>> create(const std::filesystem::path& file, const Document& document,
                                                     const RecordingOptions& options);
     ~Recorder();
 
-    /// Call once before the first step and after every step; writes when a sample is due.
+    /// Call once before the first step and after every step; writes a line when a sample is due.
     Result<void> sample(const Simulation& simulation);
-    /// Writes what is still held; the file is complete after this.
+    /// Writes buffered lines; then the file is complete.
     Result<void> finish();
 
 private:

@@ -26,7 +26,7 @@ void SharedShapes::give_back(const GeometryKey& key, ShapeHandle shape) {
         if (--known->second.users > 0) return;
         shapes_.erase(known);
     }
-    // Nobody else has it, so the world does not refuse.
+    // No body has the shape any more, so that the world does not refuse.
     (void)world_.destroy_shape(shape).ok();
 }
 

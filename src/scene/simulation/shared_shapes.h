@@ -9,16 +9,16 @@
 
 namespace embody::scene {
 
-/// Shapes in a world that several bodies have: what has the same key is there once, for as long as somebody has it.
+/// Shapes in a world that several bodies use: one shape for each key, as long as a body uses it.
 class SharedShapes {
 public:
     /// `world` outlives them.
     explicit SharedShapes(physics::World& world) : world_(world) {}
 
-    /// The shape of this key, made where it is not there yet; one that is not shared is its taker's own.
+    /// The shape of this key, made if it does not exist; a shape with an unshared key belongs to its caller.
     Result<physics::ShapeHandle> take(const GeometryKey& key,
                                       const std::function<Result<physics::ShapeDefinition>()>& make);
-    /// Only after the body that used it is gone or has another. A null shape is none.
+    /// Call only after the body that used it is removed or has another. A null shape is ignored.
     void give_back(const GeometryKey& key, physics::ShapeHandle shape);
 
 private:

@@ -21,7 +21,7 @@ using physics::JointHandle;
 
 namespace {
 
-// Grains of one entity that meet are no news.
+// Contacts between grains of one entity are left out.
 std::vector<physics::ContactEvent> contacts_between_entities(const physics::World& world) {
     std::vector<physics::ContactEvent> contacts;
     for (const physics::ContactEvent& event : world.contact_events())
@@ -34,7 +34,7 @@ std::string name_of(EntityIndex index, const LiveEntity& entity) {
     return name.empty() ? "Entity " + std::to_string(index) : name;
 }
 
-// Those of different fluids that are in each other.
+// Adds notes of liquids of different fluids that overlap.
 void add_notes_of_liquids(const std::vector<std::pair<std::string, const FluidBody*>>& liquids,
                           std::vector<std::string>& notes) {
     for (std::size_t a = 0; a < liquids.size(); ++a) {
@@ -72,11 +72,11 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
         if (!set.ok()) return set.error();
     }
 
-    // What joints and pins need as one body is made as one at once.
+    // Entities that joints and pins need as one body are made as one from the start.
     state.find_bodies(document);
 
-    // In the document's order, so that the same document is the same world; liquids last, since they fill what the
-    // others leave free.
+    // Entities are made in the document's order, so that the same document makes the same world; liquids last, since
+    // they fill the space that the others leave free.
     for (const bool liquids : {false, true}) {
         for (const Entity& entity : document.entities) {
             state.templates[entity.index] = entity;
@@ -100,7 +100,7 @@ const physics::StepReport& Simulation::step() {
     state.actions->problems.clear();
     state.actions->pause_requested = false;
 
-    // Due actions, physics, what the physics set off.
+    // Actions that are due, physics, then actions that the physics triggered.
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
     state.liquids.push(state.world->settings().time_step);
@@ -154,7 +154,7 @@ void Simulation::let_go() {
 }
 
 std::vector<std::string> Simulation::notes() const {
-    // Things of one name are told of together, where the first of them stands.
+    // Things of one name have one message, at the place of the first of them.
     std::vector<std::pair<std::string, int>> told;
     std::unordered_map<std::string, std::size_t> places;
     std::vector<std::pair<std::string, const FluidBody*>> liquids;

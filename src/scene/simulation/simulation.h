@@ -26,35 +26,35 @@ struct ActionFired {
     EntityIndex sender = 0, receiver = 0;  ///< 0: none
 };
 
-/// Of all that can move and is switched on, how many are in which state: an entity is one thing, whether it is one
-/// body, a heap, a liquid, or bends.
+/// Number of entities by state, of all that can move and are enabled: an entity counts once, whether it is one body, a
+/// pile of grains, a liquid, or a deformable.
 struct Activity {
     std::size_t things = 0, active = 0, wants_to_sleep = 0, asleep = 0;
-    std::size_t points = 0;  ///< grains, drops and nodes that stand for those that are no single body
+    std::size_t points = 0;  ///< grains, particles and nodes of the entities that are no single body
 };
 
-/// A document brought to life: each entity a body, each joint a joint, the actions running.
+/// A running document: each entity a body or points, each joint a joint, the actions active.
 class Simulation {
 public:
-    /// `catalog` may be null for documents without models. `forms` has what simulations before made, and takes what
-    /// this one makes. The error names the entity and field.
+    /// `catalog` may be null for documents without models. `forms` holds meshes of earlier simulations, and gets those
+    /// of this one. The error names the entity and field.
     static Result<std::unique_ptr<Simulation>> create(const Document& document, catalog::Catalog* catalog,
                                                       std::shared_ptr<FormCache> forms = nullptr);
     ~Simulation();
 
-    /// One time step: due actions, physics, triggers of what happened.
+    /// One time step: actions that are due, physics, then actions that its events trigger.
     const physics::StepReport& step();
-    /// What actions brought into the world and took from it in the last step.
+    /// Entities that actions added to the world and removed from it in the last step.
     [[nodiscard]] const std::vector<EntityIndex>& spawned() const;
     [[nodiscard]] const std::vector<EntityIndex>& despawned() const;
     /// Effects of the last step that could not be carried out, and why.
     [[nodiscard]] const std::vector<Error>& problems() const;
-    /// An action asked for a pause in the last step.
+    /// Whether an action requested a pause in the last step.
     [[nodiscard]] bool pause_requested() const;
     [[nodiscard]] const std::vector<ActionFired>& fired() const;
     /// Ropes that broke in the last step; their user_data is the entity.
     [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
-    /// A key or button (OnSignal); the number of actions it starts at the next step.
+    /// A key or button (OnSignal); returns the number of actions it starts at the next step.
     std::size_t signal(const std::string& key, const std::string& button);
 
     [[nodiscard]] physics::World& world();
@@ -62,23 +62,23 @@ public:
     /// Entities that are in the world now, spawned ones too, ascending.
     [[nodiscard]] const std::vector<EntityIndex>& entities() const;
     [[nodiscard]] bool contains(EntityIndex entity) const;
-    /// Null for an entity that is not (any more) in the world, and for one that has points.
+    /// Null for an entity that is not (any more) in the world, and for one with points.
     [[nodiscard]] physics::BodyHandle body(EntityIndex entity) const;
-    /// A body to pull it at, at or near a place in the world: its own, one of its points', or a hand that is there
-    /// until let_go(). May be null.
+    /// A body to pull it at, at or near a place in the world: its own, that of one of its points, or a hand that is
+    /// there until let_go(). May be null.
     [[nodiscard]] physics::BodyHandle hold(EntityIndex entity, Vec3 position);
     void let_go();
-    /// What is not simulated as its kind says, and why: "Towel is simulated as rigid, because …".
+    /// Entities that are not simulated as their kind, and why: "Towel is simulated as rigid, because …".
     [[nodiscard]] std::vector<std::string> notes() const;
-    /// What stands for an entity that is not one body: grains. Null for others; valid until an edit.
+    /// The points of an entity that is not one body. Null for others; valid until an edit.
     [[nodiscard]] const MovingPoints* points(EntityIndex entity) const;
-    /// Of the entity's frame: its body's; of points where they were put.
+    /// Pose of the entity's frame: its body's, or for points the pose that was set last.
     [[nodiscard]] Transform pose(EntityIndex entity) const;
-    /// World bounds of what collides; empty where nothing does.
+    /// World bounds of the collision shape; empty where there is none.
     [[nodiscard]] Bounds bounds(EntityIndex entity) const;
-    /// How far it can move down until it touches another, m; nothing if it meets none within `most`.
+    /// How far it can move down until it touches another entity, m; empty if it touches none within `most`.
     [[nodiscard]] std::optional<double> drop_distance(EntityIndex entity, double most) const;
-    /// What a ray (unit direction) meets first within `most`, m.
+    /// The first hit of a ray (unit direction) within `most`, m.
     struct RayHit {
         EntityIndex entity = 0;
         Vec3 position, normal;
@@ -87,35 +87,35 @@ public:
     [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double most,
                                                  EntityIndex ignore = 0) const;
     [[nodiscard]] bool is_movable(EntityIndex entity) const;
-    /// Of points, that of the most awake.
+    /// For points the state of the most awake one.
     [[nodiscard]] physics::SleepState sleep_state(EntityIndex entity) const;
     [[nodiscard]] Activity activity() const;
     [[nodiscard]] EntityIndex entity(physics::BodyHandle body) const;  ///< 0 if none
-    /// The entity as it is now, but for pose and velocities; null for one that is not in the world.
+    /// The entity as it is now, without pose and velocities; null for one that is not in the world.
     [[nodiscard]] const Entity* definition(EntityIndex entity) const;
     /// Null for a joint that is not in the world.
     [[nodiscard]] physics::JointHandle joint(std::uint32_t joint) const;
-    /// The attributes as they act: model's, entity's manual ones, what actions set.
+    /// The attributes in effect: the model's, the entity's manual ones, values that actions set.
     [[nodiscard]] Result<attributes::AttributeSet> attributes(EntityIndex entity) const;
 
-    /// Edits while running; the same checks as create().
+    /// Edits while running; with the same checks as create().
     Result<void> add(const Entity& entity);
-    /// With `keep_motion` pose and velocities stay as they are now, else they become the entity's.
+    /// With `keep_motion` pose and velocities stay unchanged, else they become the entity's.
     Result<void> update(const Entity& entity, bool keep_motion);
-    /// The catalogue's models of these keys have other attributes: what is made of them takes these at once. All are
+    /// Call when the catalogue's models of these keys have new attributes: their entities get these at once. All are
     /// tried; the error is the first.
     Result<void> renew_models(const std::set<std::string>& keys, bool keep_motion);
     Result<void> remove(EntityIndex entity);  ///< its joints go with it
-    /// Many at once; those that are not (any more) in the world are no error.
+    /// Removes many at once; entities that are not (any more) in the world are no error.
     void remove_all(const std::vector<EntityIndex>& entities);
-    /// Puts its frame there; points are carried along and are at rest then.
+    /// Sets the pose of its frame; points move along and are at rest then.
     Result<void> set_pose(EntityIndex entity, const Transform& pose);
     Result<void> set_velocity(EntityIndex entity, Vec3 linear, Vec3 angular);
-    /// Small grains are solved in finer steps than these settings say.
+    /// With small grains the substeps are shorter than in these settings.
     Result<void> set_settings(const physics::WorldSettings& settings);
     Result<void> add_joint(const SceneJoint& joint);
     Result<void> remove_joint(std::uint32_t joint);
-    /// Actions that were there go on where they are; new ones start.
+    /// Actions that exist already keep their state; new ones start.
     void set_actions(const std::vector<Action>& actions);
 
 private:

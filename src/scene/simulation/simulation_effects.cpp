@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What actions do to entities, and what they ask of them.
+// Effects of actions on entities, and their queries.
 #include <algorithm>
 
 #include "scene/simulation/simulation_state.h"
@@ -8,9 +8,9 @@ namespace embody::scene {
 
 namespace {
 
-// Beyond this an action that spawns whenever something touches would fill the memory.
+// Maximum number of spawned entities: an action that spawns at every contact would fill the memory.
 constexpr std::size_t most_spawned = 10'000;
-// An action that answers contacts with things that make contacts must not explode within a step.
+// Maximum number per step: an action that answers contacts by things that make contacts must not explode within a step.
 constexpr std::size_t most_spawned_a_step = 32;
 
 }  // namespace
@@ -64,7 +64,7 @@ Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spaw
     return next_spawned++;
 }
 
-// A primitive's own category, or what the taxonomy says of a model.
+// A primitive's own category, or the taxonomy's of a model.
 std::string Simulation::State::category(EntityIndex index) const {
     const LiveEntity* entity = find(index);
     if (!entity) return {};

@@ -20,7 +20,7 @@ using physics::ShapeHandle;
 Error of_entity(const Entity& entity, Error error) {
     std::string who = "entity " + std::to_string(entity.index);
     if (!entity.name.empty()) who += " (" + entity.name + ")";
-    // What comes from deeper down may have said so already.
+    // An inner function may have named the entity already.
     if (error.where.starts_with(who)) return error;
     error.where = entity_field(error.where);
     return in_place(who, std::move(error));
@@ -35,7 +35,7 @@ LiveEntity* Simulation::State::find(EntityIndex index) {
     return const_cast<LiveEntity*>(std::as_const(*this).find(index));
 }
 
-// What it is made of, without anything of it in the world.
+// Definition of the entity; nothing of it is in the world yet.
 Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     LiveEntity described;
     described.definition = entity;
@@ -51,7 +51,7 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     return described;
 }
 
-// With its shape; the body's definition lacks nothing then.
+// Makes the shape, which completes the body's definition.
 Result<physics::BodyDefinition> Simulation::State::prepare_body(LiveEntity& entity) {
     Result<physics::BodyDefinition> made =
         body_of(entity.definition, *entity.attributes, definitions.models.taxonomy());
@@ -95,7 +95,7 @@ Result<void> Simulation::State::put(LiveEntity& entity) {
 void Simulation::State::take_out(LiveEntity& entity) {
     entity.points.reset();
     if (entity.body.is_null()) return;
-    // It is in the world, which does not refuse.
+    // The body is in the world, so that the world does not refuse.
     (void)world->destroy_body(entity.body).ok();
     shapes.give_back(entity.shape_key, entity.shape);
 }
@@ -123,13 +123,13 @@ Transform Simulation::State::pose_of(const LiveEntity& entity) const {
     return entity.points ? entity.frame : world->pose(entity.body);
 }
 
-// Of its centre of mass, and its spin.
+// Velocity of its centre of mass, and angular velocity.
 std::pair<Vec3, Vec3> Simulation::State::motion_of(const LiveEntity& entity) const {
     if (entity.points) return {entity.points->linear_velocity(), entity.points->angular_velocity()};
     return {world->linear_velocity(entity.body), world->angular_velocity(entity.body)};
 }
 
-// The same body takes the new definition.
+// The body stays and gets the new definition.
 Result<void> Simulation::State::update_body(LiveEntity& before, LiveEntity& after, bool keep_motion) {
     Result<physics::BodyDefinition> body = prepare_body(after);
     if (!body.ok()) return body.error();
@@ -149,7 +149,7 @@ Result<void> Simulation::State::update_body(LiveEntity& before, LiveEntity& afte
     return {};
 }
 
-// The same points go on with other matter; what its pins hold to others stays held where it is.
+// The points stay and get other matter; nodes that its pins hold to others stay held where they are.
 Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& after) {
     Result<PointsDefinition> definition = definitions.points.definition(after.definition, *after.attributes);
     if (!definition.ok()) return definition.error();
@@ -167,7 +167,7 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
     return same_pins ? Result<void>{} : fasten(after);
 }
 
-// Another kind, or other points: made anew where it is.
+// Another kind, or other points: the entity is made again at its present pose.
 Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
     if (after.form.has_points && is_held_as_body(before.definition.index, kind_of(*after.attributes)))
         return Error{"attributes.kind", "grains cannot be held by a joint or a pin", "remove that first"};
@@ -176,7 +176,7 @@ Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, b
         after.definition.pose = after.frame = pose_of(before);
         std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
     }
-    // Liquid fills only what is free and joins liquid that is there, so what it was is not there meanwhile.
+    // Liquid fills only free space and joins existing liquid, so that the old points are disabled meanwhile.
     const bool hides =
         before.definition.enabled && (!before.points || matter_of(*before.attributes) == attributes::Matter::liquid);
     const auto show = [&](bool shown) {
@@ -223,7 +223,7 @@ void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
     std::vector<BodyHandle> handles;
     for (const EntityIndex index : gone) {
         LiveEntity& entity = live.at(index);
-        // With the bodies the world takes their joints.
+        // The world removes joints together with their bodies.
         for (const std::uint32_t joint : std::set(holds.joints_of(index))) {
             holds.remove_joint(joints.at(joint).definition);
             joints.erase(joint);
@@ -231,7 +231,7 @@ void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
         entity.points.reset();
         if (!entity.body.is_null()) handles.push_back(entity.body);
     }
-    // They are in the world, which does not refuse.
+    // They are in the world, so that the world does not refuse.
     (void)world->destroy_bodies(handles).ok();
     for (const EntityIndex index : gone) {
         const auto found = live.find(index);

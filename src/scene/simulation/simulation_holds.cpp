@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What holds entities together: joints, and the pins of what changes its form.
+// Connections between entities: joints, and the pins of deformable things.
 #include <algorithm>
 
 #include "attributes/physical_kind.h"
@@ -15,13 +15,14 @@ using physics::JointHandle;
 
 namespace {
 
-// Which way a rope goes at a node, towards later ones.
+// Direction of a rope at a node, towards later nodes.
 Vec3 direction_at(const std::vector<Vec3>& line, std::uint32_t node) {
     const std::size_t before = node > 0 ? node - 1 : 0, after = std::min<std::size_t>(node + 1, line.size() - 1);
     return normalized(line[after] - line[before], {1, 0, 0});
 }
 
-// With their places at the start: a node that is the nearest to a pin without being within its radius is drawn there.
+// Pinned nodes with their initial places: a node that is only the nearest to a pin, not within its radius, is moved
+// there.
 std::vector<HeldNode> held_nodes(const Entity& entity, const physics::DeformableDefinition& deformable) {
     std::vector<HeldNode> held;
     for (const Pin& pin : entity.pins) {
@@ -38,7 +39,7 @@ void add_targets(const std::vector<Pin>& pins, std::set<EntityIndex>& targets) {
         if (pin.to) targets.insert(*pin.to);
 }
 
-// Whether a pin between things of these kinds is a tie, which makes neither rigid.
+// Whether a pin between things of these kinds is a tie, which does not make them rigid.
 bool may_tie(PhysicalKind one, PhysicalKind other) {
     return is_deformable(one) && is_deformable(other) && (is_thin(one) || is_thin(other));
 }
@@ -70,7 +71,7 @@ bool Simulation::State::is_held_as_body(EntityIndex index, PhysicalKind kind) co
     return !holds.joints_of(index).empty() || std::ranges::any_of(holds.pinned_to(index), is_held);
 }
 
-// Pins of soft things to this sheet or rope: the nodes of it that they catch are tied to the soft thing.
+// Pins of soft things to this sheet or rope: its nodes within their reach are tied to the soft thing.
 void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is_held,
                                  std::vector<physics::Tie>& ties) const {
     std::vector<Vec3> positions;
@@ -107,7 +108,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
     for (std::size_t i = 0; i < entity.definition.pins.size(); ++i) {
         const Pin& pin = entity.definition.pins[i];
         const std::vector<std::uint32_t> nodes = pinned_nodes(pin, deformable->nodes);
-        // Of neighbours the outer ones: those between hold each other.
+        // Only the outer nodes of a row are clamped: nodes between two held ones keep their direction.
         const auto clamp = [&](std::uint32_t node, Quat holder) {
             const auto has = [&](std::uint32_t other) { return std::ranges::binary_search(nodes, other); };
             if (!is_rope || !pin.clamped || is_clamped[node] || (node > 0 && has(node - 1) && has(node + 1))) return;
@@ -131,7 +132,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
             }
             continue;
         }
-        if (other->points && is_thin(*other)) continue;  // which is tied to it
+        if (other->points && is_thin(*other)) continue;  // the other's ties hold this entity
         if (other->points)
             return of_entity(entity.definition, {where, "is no single body, cloth or rope", "pin it to one of these"});
         const Transform pose = world->pose(other->body);
@@ -148,7 +149,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
 
 Result<void> Simulation::State::fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new) {
     const EntityIndex itself = entity.definition.index;
-    // Ties of a soft thing are those of what it is pinned to.
+    // Ties of a soft thing belong to the sheet or rope that it is pinned to.
     const bool has_other_ties = (is_new || before != entity.definition.pins) && !is_thin(entity);
     const std::set<EntityIndex>& pinned_to_it = holds.pinned_to(itself);
     std::set<EntityIndex> meant = is_new ? pinned_to_it : std::set<EntityIndex>{};
@@ -181,7 +182,7 @@ Result<void> Simulation::State::fasten_all(std::optional<EntityIndex> came) {
     return {};
 }
 
-// Soft ends of a joint are rigid as long as it is there.
+// Soft ends of a joint are rigid as long as the joint exists.
 Result<void> Simulation::State::make_bodies_of(const SceneJoint& joint) {
     for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
         const LiveEntity* end = find(index);
@@ -194,7 +195,7 @@ Result<void> Simulation::State::make_bodies_of(const SceneJoint& joint) {
     return {};
 }
 
-// What a joint held may be soft again.
+// Things that the joint held may be soft again.
 Result<void> Simulation::State::soften_ends(const SceneJoint& joint) {
     for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
         const LiveEntity* end = find(index);

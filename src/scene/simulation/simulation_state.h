@@ -29,7 +29,7 @@ struct LiveEntity {
     physics::BodyHandle body;              ///< null: it has points
     physics::ShapeHandle shape;            ///< the body's
     GeometryKey shape_key;
-    Transform frame;  ///< of points that have no pose of their own: where they were put, or moved to by hand
+    Transform frame;  ///< of points without a pose of their own: the pose that was set last
 };
 
 struct LiveJoint {
@@ -37,15 +37,15 @@ struct LiveJoint {
     physics::JointHandle joint;
 };
 
-/// A push that an action gave, until a moment.
+/// A push by an action, until a given time.
 struct TimedForce {
     EntityIndex entity = 0;
     Vec3 force;
     double until = 0;
 };
 
-/// What a simulation consists of. Entities are made and changed in simulation_entities.cpp, what holds them together in
-/// simulation_holds.cpp, what actions do to them in simulation_effects.cpp.
+/// State of a simulation. Entities are made and changed in simulation_entities.cpp, their connections in
+/// simulation_holds.cpp, effects of actions in simulation_effects.cpp.
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
           std::shared_ptr<FormCache> forms)
@@ -57,7 +57,7 @@ struct Simulation::State {
 
     std::unique_ptr<physics::World> world;
     physics::WorldSettings settings;  ///< the document's
-    double finest_grain = 1e300;      ///< that was ever in this world, m
+    double finest_grain = 1e300;      ///< smallest ever in this world, m
     EntityDefinitions definitions;
     SharedShapes shapes;
     Liquids liquids;
@@ -65,45 +65,45 @@ struct Simulation::State {
     std::map<EntityIndex, LiveEntity> live;
     std::vector<EntityIndex> indices;
     std::map<std::uint32_t, LiveJoint> joints;
-    HoldIndex holds;                   ///< of pins and joints of all that live
+    HoldIndex holds;                   ///< of pins and joints of all live entities
     std::set<EntityIndex> remarkable;  ///< entities with a note, and liquids
-    std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these are there
+    std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these exist
     std::vector<TimedForce> timed_forces;
     std::vector<EntityIndex> spawned, despawned;
     EntityIndex next_spawned = last_document_index + 1;
     std::unique_ptr<ActionRunner> actions;
 
-    // Entities -------------------------------------------------------------------------------------------------------
+    // Entities --------------------------------------------------------------------------------------------------------
 
     /// Null for an entity that is not in the world.
     [[nodiscard]] LiveEntity* find(EntityIndex index);
     [[nodiscard]] const LiveEntity* find(EntityIndex index) const;
     Result<void> add(const Entity& entity);
     Result<void> update(const Entity& entity, bool keep_motion);
-    /// All of them are in the world.
+    /// All of them must be in the world.
     void remove_all(const std::vector<EntityIndex>& gone);
     Result<void> place(LiveEntity& entity, const Transform& pose);
     Result<void> set_velocity(LiveEntity& entity, Vec3 linear, Vec3 angular);
     [[nodiscard]] Transform pose_of(const LiveEntity& entity) const;
-    /// Heaps of small grains need finer steps than the document asks for.
+    /// Piles of small grains need shorter substeps than the document's.
     Result<void> apply_settings();
 
-    // What holds them together ---------------------------------------------------------------------------------------
+    // Connections between entities ------------------------------------------------------------------------------------
 
-    /// Whether a joint holds it, or something is pinned to it that cannot be tied to a thing of its kind.
+    /// Whether a joint holds the entity, or a thing is pinned to it that cannot be tied to a thing of its kind.
     [[nodiscard]] bool is_held_as_body(EntityIndex index, attributes::PhysicalKind kind) const;
-    /// Before they are there: what joints and pins of the document need as one body.
+    /// Before entities are made: finds those that joints and pins of the document need as one body.
     void find_bodies(const Document& document);
-    /// Holds what its pins say to where that is now on other entities.
+    /// Connects its pins to the present places on other entities.
     Result<void> fasten(const LiveEntity& entity);
-    /// Of one that has changed, whose pins were `before`: what is tied to it. `is_new`: it was made anew.
+    /// Updates ties to an entity that has changed, whose pins were `before`. `is_new`: it was made again.
     Result<void> fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new);
-    /// An entity that came, and those whose pins waited for it; without one: all.
+    /// Connects an entity that was added, and those whose pins waited for it; without one: all.
     Result<void> fasten_all(std::optional<EntityIndex> came);
     Result<void> add_joint(const SceneJoint& joint);
     Result<void> remove_joint(std::uint32_t index);
 
-    // What actions do ------------------------------------------------------------------------------------------------
+    // Effects of actions ----------------------------------------------------------------------------------------------
 
     void start_actions(const std::vector<Action>& list);
     /// A push lasts at least one step.
@@ -137,7 +137,7 @@ private:
     [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const;
 };
 
-/// Names the entity before what is wrong with it.
+/// The error with the entity's name before its field.
 Error of_entity(const Entity& entity, Error error);
 
 }  // namespace embody::scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A primitive's category says what it is: liquid, bulk, cloth, rope, something soft, without any attribute of its own.
+// A primitive's category says its kind: liquid, bulk, cloth, rope, something soft, without any attribute of its own.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST_F(PrimitiveOfCategory, ChangesNothingWhereThingsOfItAreRigidOrItIsUnknown) 
         ASSERT_FALSE(simulation_->points(2)) << category;
         EXPECT_EQ(simulation_->world().mass(simulation_->body(2)), usual) << category;
     }
-    // What its shape cannot be is rigid and says why; a plane is what it always is.
+    // A primitive whose shape cannot be of the kind is rigid and has a note why; a plane is always rigid or static.
     become("curtain", BoxShape{{0.2, 0.2, 0.2}});
     EXPECT_FALSE(simulation_->points(2));
     EXPECT_EQ(simulation_->notes().size(), 1u);
@@ -98,7 +98,7 @@ TEST_F(PrimitiveOfCategory, ChangesNothingWhereThingsOfItAreRigidOrItIsUnknown) 
     EXPECT_TRUE(simulation_->notes().empty());
 }
 
-// Liquids fill what the others leave free, also where only the category says that one is a liquid.
+// Liquids fill the space that others leave free, also where only the category says that one is a liquid.
 TEST_F(PrimitiveOfCategory, LiquidsAreFilledLast) {
     Entity block = thing();
     block.index = 3;

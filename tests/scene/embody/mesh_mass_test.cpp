@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles that a person makes soft, granular and so on weigh what they enclose.
+// The mass of triangles that a person makes soft, granular and so on is that of the volume that they enclose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ TEST(MeshPrimitive, WeighsWhatTheSameBoxDoesWhateverItIsMadeOf) {
     }
 }
 
-// Of two boxes apart the hull would be three times as heavy.
+// The hull of two separate boxes would be three times as heavy.
 TEST(MeshPrimitive, ThatIsNotConvexWeighsLessThanItsHull) {
     MeshShape two = box_of_triangles({0.1, 0.1, 0.1});
     const MeshShape other = two;
@@ -86,7 +86,7 @@ TEST(MeshPrimitive, ThatIsNotConvexWeighsLessThanItsHull) {
     const auto simulation = make(a_thing(two, PhysicalKind::rigid));
     ASSERT_TRUE(simulation);
     EXPECT_NEAR(mass_of(*simulation), 1000 * 0.016, 1e-4);
-    // Static ones stay what they are.
+    // Static meshes stay unchanged.
     Entity fixed;
     fixed.geometry = ShapeDefinition{two};
     const auto set = EntityDefinitions(nullptr).attributes.acting(fixed);

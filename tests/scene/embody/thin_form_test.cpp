@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sheets and lines that stand for thin things.
+// Sheets and lines that are made of thin things.
 #include "scene/embody/thin_form.h"
 
 #include <gtest/gtest.h>

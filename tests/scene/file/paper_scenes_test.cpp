@@ -36,7 +36,7 @@ TEST(PaperScenesList, HasDifferentNamesAndThePapersCounts) {
 TEST(GeneratedMeshes, HaveThePapersNumberOfTriangles) {
     const physics::MeshShape dog = make_dog(1);
     EXPECT_EQ(dog.triangles.size(), 33854u);
-    // Closed: each edge is met once in each direction.
+    // The surface is closed: each edge occurs once in each direction.
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const auto& t : dog.triangles)
         for (const int i : {0, 1, 2})

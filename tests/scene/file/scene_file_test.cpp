@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// A folder that goes with the test.
+// A folder that is deleted after the test.
 class Folder {
 public:
     Folder() {
@@ -40,7 +40,7 @@ json minimal() {
     return {{"embody_scene", 1}, {"entities", {{{"shape", {{"type", "box"}, {"half_extents", {1, 1, 1}}}}}}}};
 }
 
-// Where in the minimal scene something is put that does not belong there, and what the message must say.
+// A place in the minimal scene, a wrong value for it, and the text that the message must contain.
 struct WrongField {
     const char* pointer;
     json value;
@@ -122,7 +122,7 @@ TEST(SceneFileRefuses, WrongFieldsByNameWithTheNearestKnownOne) {
     }
 }
 
-// What follows from the lists of fields: the path, what is wrong, and what the field holds.
+// Checks that follow from the lists of fields: the path, the error, and what the field must hold.
 TEST(SceneFileRefuses, FieldsOfPinsJointsAndActionsByTheirLists) {
     const struct {
         const char* list;
@@ -173,7 +173,7 @@ TEST(SceneFileRefuses, WhatIsNoScene) {
         EXPECT_NE(message_of(nothing), "accepted") << nothing.dump();
 }
 
-// What is said of a file with that text.
+// The refusal of a file with that text.
 std::string refusal_of(const std::string& name, const std::string& text) {
     const Folder folder;
     write(folder.path / name, text);
@@ -247,7 +247,7 @@ TEST(SceneFile, SaysEverythingAndReadsItBackAlike) {
     ASSERT_TRUE(read.ok()) << read.error().message();
     EXPECT_EQ(document_to_json(read.value()).dump(), written.dump());
 
-    // Down to the bits, also of what the writer might have lost.
+    // Equal to the last bit, also values that the writer might have lost.
     EXPECT_EQ(read.value().find(2)->pose, document.find(2)->pose);
     EXPECT_EQ(read.value().find(2)->torque.y, 1e-300);
     EXPECT_EQ(read.value().find(2)->attributes, document.find(2)->attributes);
@@ -297,7 +297,7 @@ TEST(SceneFile, TakesRotationsAndAnchorsAsPeopleWriteThem) {
     const Result<Document> read = document_from_json(scene);
     ASSERT_TRUE(read.ok()) << read.error().message();
 
-    // Both frames are the same place in the world, their X along the axis.
+    // Both frames are at the same place in the world, with X along the axis.
     const Entity& door = read.value().entities[0];
     const physics::JointDefinition& joint = read.value().joints[0].definition;
     const Transform b = door.pose * joint.frame_b;
@@ -307,7 +307,7 @@ TEST(SceneFile, TakesRotationsAndAnchorsAsPeopleWriteThem) {
     EXPECT_LT(distance(rotate(door.pose.rotation, {1, 0, 0}), {0, 0, -1}), 1e-12);
 }
 
-// Found by tools/soak.sh: both were written as what could not be read again.
+// Found by tools/soak.sh: both were written in a form that could not be read again.
 TEST(SceneFile, ReadsBackWhatItWroteOfTheHighestIndexAndOfHugeAngles) {
     json scene = minimal();
     scene["entities"][0]["index"] = last_document_index;
@@ -321,7 +321,7 @@ TEST(SceneFile, ReadsBackWhatItWroteOfTheHighestIndexAndOfHugeAngles) {
     ASSERT_TRUE(again.ok()) << again.error().message();
     EXPECT_EQ(again.value().entities[0].pose.rotation, rotation);
 
-    // What has no index then finds none.
+    // An entity without index then gets none.
     scene["entities"].push_back(minimal()["entities"][0]);
     const Result<Document> one_more = document_from_json(scene);
     ASSERT_FALSE(one_more.ok());
@@ -333,11 +333,11 @@ TEST(SceneFileSaving, KeepsTheOldFileWhereTheNewOneCannotBeWritten) {
     const Folder folder;
     const fs::path file = folder.path / "scene.json";
     ASSERT_TRUE(save_document(samples::floor_and_box(), file).ok());
-    // A folder in the place of the file: the rename fails after the draft was written.
+    // A folder at the path of the file: the rename fails after the draft was written.
     const fs::path taken = folder.path / "taken.json";
     fs::create_directory(taken);
     EXPECT_FALSE(save_document(samples::everything(), taken).ok());
-    // A file in the place of the folder.
+    // A file at the path of the folder.
     EXPECT_FALSE(save_document(samples::everything(), file / "below.json").ok());
     ASSERT_TRUE(load_document(file).ok());
     EXPECT_EQ(document_to_json(load_document(file).value()), document_to_json(samples::floor_and_box()));
@@ -359,7 +359,7 @@ TEST(SceneFileSaving, FilesObeyTheUmaskAndKeepTheirMode) {
         EXPECT_TRUE(save_document(samples::floor_and_box(), file).ok());
         EXPECT_EQ(mode_of(file), 0666 & ~mask);
     }
-    // What a person set stays, whatever the umask.
+    // A mode that a person set stays, whatever the umask.
     umask(0022);
     const fs::path file = folder.path / "kept.json";
     EXPECT_TRUE(save_document(samples::floor_and_box(), file).ok());
@@ -383,7 +383,7 @@ TEST(SceneFileSaving, LeavesDevicesAndFoldersWhereTheyAre) {
 
 TEST(SceneFileSaving, RefusesAFullDisk) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-    // Nothing can be made in /dev/full's own name either: it is a device, not a folder.
+    // No file can be made below /dev/full: it is a device, not a folder.
     EXPECT_FALSE(save_document(samples::floor_and_box(), "/dev/full/scene.json").ok());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The published schema and the strict reader say the same of every field.
+// The published schema and the strict reader agree on every field.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +52,7 @@ protected:
     valijson::Schema schema_;
 };
 
-// Every place in a scene where one thing is changed: the paths of all values.
+// The paths of all values of a scene; one value is changed at a time.
 void list_places(const json& value, const std::string& pointer, std::vector<std::string>& places) {
     places.push_back(pointer);
     if (value.is_object())
@@ -68,7 +68,7 @@ TEST_F(SceneSchema, NamesTheAttributesOfTheRegistry) {
     EXPECT_EQ(named, known);
 }
 
-// The list of settings has the ranges again that the physics validates, for the schema and for messages with units.
+// The list of settings repeats the ranges that the physics validates, for the schema and for messages with units.
 TEST_F(SceneSchema, SettingsHaveTheRangesOfThePhysics) {
     int ranges = 0;
     for_each_field<physics::WorldSettings>([&ranges](const auto& field) {
@@ -101,7 +101,7 @@ TEST_F(SceneSchema, NamesEveryShape) {
     for (const std::string& name : known)
         EXPECT_NE(format.find("| `" + name + "` |"), std::string::npos) << name << " is not in docs/scene-format.md";
 
-    // The Studio draws what is no more than its lengths by a table.
+    // The Studio draws shapes that consist only of lengths by a table.
     const std::string table = read_text("studio/src/view/shapes_of_lengths.ts");
     physics::for_each_shape_of_lengths<physics::ShapeDefinition>([&](const auto& shape) {
         EXPECT_NE(table.find("\n  " + std::string(shape.name) + ": {"), std::string::npos)
@@ -136,7 +136,7 @@ TEST_F(SceneSchema, AllowsWhatTheReaderAllows) {
     EXPECT_GE(demos, 3);
 }
 
-// Breaks each value of a scene that says everything in five ways and lets both judge.
+// Changes each value of a scene with all fields in five ways; schema and reader must agree.
 TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
     json scene = document_to_json(samples::everything());
     // One action of each trigger and each effect is enough here.
@@ -154,7 +154,7 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
             const bool reads = document_from_json(changed).ok();
             const bool fits = allows(changed);
             refused += reads ? 0 : 1;
-            // Values of attributes in actions, and which entities there are, are beyond a schema.
+            // A schema cannot check values of attributes in actions, or which entities exist.
             const bool is_beyond = place == "/entities" || place.ends_with("/effect/value") ||
                                    place.find("/entity_") != std::string::npos ||
                                    place.find("/attributes/") != std::string::npos;

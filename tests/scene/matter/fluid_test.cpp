@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Entities of kind fluid: they fill, flow, carry what floats, mix, are changed and taken away.
+// Entities of kind fluid: they fill, flow, carry floating bodies, mix, are changed and removed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -75,7 +75,7 @@ TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
     EXPECT_NEAR(simulation->points(small)->mass(), 998 * 0.064, 0.05 * 998 * 0.064);
     EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
 
-    // In the running scene it may be switched off and on.
+    // It can be disabled and enabled in the running scene.
     Entity changed = *simulation->definition(large);
     changed.enabled = false;
     ASSERT_TRUE(simulation->update(changed, true).ok());
@@ -85,7 +85,7 @@ TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
     EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
 }
 
-// As many particles as a layer of the other's would be have ten times its volume.
+// The particles of the other's cell size that fill one layer have ten times its volume.
 TEST(Fluids, ThinnerThanTheParticlesBesideThemKeepVolumeAndBudget) {
     Document document;
     add_box(document, "Cube", {0.0525, 0.0525, 0.0525}, {0.7, 0.1, 0}, water(1000));
@@ -125,7 +125,7 @@ TEST(Fluids, PutFarApartLoseNothingAndMixAgainWhenTheyMeet) {
 }
 
 TEST(Fluids, ThatRunFarApartLoseNothing) {
-    // Their grid would have three million cells in the end, more than a fluid may.
+    // Their common grid would have three million cells in the end, more than a fluid may have.
     Document document;
     std::vector<EntityIndex> thrown;
     for (const double side : {-1.0, 1.0})
@@ -199,11 +199,11 @@ TEST(Fluids, FillATubLessItsWallsAndComeToRest) {
     const std::size_t count = points_of(*simulation, index).size();
     step(*simulation, 90);
     EXPECT_EQ(points_of(*simulation, index).size(), count);
-    // A column of water has its centre at half its height.
+    // The centre of a column of water is at half its height.
     const double height = its->mass() / (998 * 0.16);
     EXPECT_NEAR(mean_height(points_of(*simulation, index)), height / 2, 0.04 * height);
 
-    // A ray from above meets the surface.
+    // A ray from above hits the surface.
     const auto hit = simulation->cast_ray({0.01, 1, 0.02}, {0, -1, 0}, 2);
     ASSERT_TRUE(hit.has_value());
     EXPECT_EQ(hit->entity, index);
@@ -220,7 +220,7 @@ TEST(Fluids, ABoxFloatsAsDeepAsItsDensitySays) {
     const auto simulation = make(read.value());
     ASSERT_TRUE(simulation);
     step(*simulation, 240);
-    // Archimedes: half of it is under water; that much water rises beside it.
+    // Archimedes: half of it is under water, and the level rises by the displaced volume.
     const double level = (simulation->points(index)->mass() / 998 + 0.5 * 8 * 0.06 * 0.06 * 0.06) / 0.16;
     EXPECT_NEAR(simulation->pose(toy).position.y, level, 0.012);  // a third of a cell of 4 cm
 }
@@ -278,7 +278,7 @@ TEST(Fluids, OfTheSameMatterMixAndOthersDoNot) {
             EXPECT_NEAR(together, (0.1 + 0.09 / 0.16 * 0.1) / 2, 0.006);
         }
 
-        // One goes, the other stays as it is.
+        // One is removed, the other stays unchanged.
         ASSERT_TRUE(simulation->remove(upper).ok());
         EXPECT_EQ(points_of(*simulation, lower).size(), count);
         EXPECT_EQ(simulation->world().fluids().size(), 1u);
@@ -296,7 +296,7 @@ TEST(Fluids, ChangeWhileTheyRun) {
     ASSERT_TRUE(simulation);
     step(*simulation, 10);
 
-    // Other matter: the same particles where they are.
+    // Other matter: the same particles at the same places.
     const std::vector<Vec3> before = points_of(*simulation, index);
     const double mass = simulation->points(index)->mass();
     Entity changed = document.entities.back();
@@ -307,12 +307,12 @@ TEST(Fluids, ChangeWhileTheyRun) {
     EXPECT_EQ(points_of(*simulation, index), before);
     EXPECT_NEAR(simulation->points(index)->mass(), mass * 1400 / 998, 1e-9 * mass);
 
-    // Another fineness: filled again.
+    // Another resolution: filled again.
     changed.attributes["particle_budget"] = 500.0;
     ASSERT_TRUE(simulation->update(changed, true).ok());
     EXPECT_LT(points_of(*simulation, index).size(), before.size());
 
-    // Another kind and back. What was solid does not keep the liquid out of its own place.
+    // Another kind and back. The solid does not keep the liquid out of its own place.
     Entity solid = changed;
     solid.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     ASSERT_TRUE(simulation->update(solid, true).ok());
@@ -324,7 +324,7 @@ TEST(Fluids, ChangeWhileTheyRun) {
     EXPECT_GT(points_of(*simulation, index).size(), 200u);
     step(*simulation, 5);
 
-    // Moved, it is at rest there; taken out and put in again, it is as it was.
+    // After a move it is at rest at the new place; disabled and enabled again, it has its old state.
     MovingPoints& its = const_cast<MovingPoints&>(*simulation->points(index));
     const Vec3 center = its.center_of_mass();
     Transform pose = simulation->pose(index);
@@ -423,7 +423,7 @@ TEST(Fluids, AMugThatTiltsEmpties) {
     ASSERT_TRUE(simulation->set_velocity(mug_index, {}, {}).ok());
     step(*simulation, 60);
     EXPECT_LT(inside(), 0.05);
-    // All of it is still there, but for drops that ran out of the grid's reach.
+    // All of it is still there, except for drops that left the grid.
     EXPECT_GE(simulation->points(index)->mass(), 0.97 * mass);
 }
 

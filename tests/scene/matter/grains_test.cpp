@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Entities of kind granular: filled, poured, changed and taken away.
+// Entities of kind granular: filled, poured, changed and removed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,7 +62,7 @@ TEST(GrainFillingRefuses, ShapesThatTheBudgetDoesNotFill) {
     ASSERT_FALSE(half.ok());
     EXPECT_EQ(half.error().where, "grain_budget");
     EXPECT_NE(half.error().remedy.find("simulated_diameter"), std::string::npos);
-    // Balls have a largest size, so that 2,000 of them fill no mountain.
+    // Balls have a maximum size, so that 2,000 of them cannot fill a mountain.
     Document mountain = samples::floor_and_box(10'000);
     mountain.entities[1].geometry = ShapeDefinition{BoxShape{{10'000, 10'000, 10'000}}};
     mountain.entities[1].attributes["kind"] = to_value(attributes::PhysicalKind::granular);
@@ -92,7 +92,7 @@ TEST(GrainFilling, FillsEachShapeWithoutOverlap) {
         EXPECT_GE(least_distance(filled.value()), d) << physics::shape_name(shape);
         const double share = static_cast<double>(filled.value().size()) * pi / 6 * d * d * d / volume;
         EXPECT_LT(share, 0.56) << physics::shape_name(shape);
-        EXPECT_GT(share, 0.2) << physics::shape_name(shape);  // the rim that holds no whole ball is empty
+        EXPECT_GT(share, 0.2) << physics::shape_name(shape);  // the rim that is too narrow for a whole ball is empty
         EXPECT_EQ(filled.value(), fill_with_grains(shape, d, 100'000, 7).value());
     }
 }
@@ -164,7 +164,7 @@ TEST(Grains, ChangeWhileTheyRun) {
     ASSERT_TRUE(simulation);
     step(*simulation, 20);
 
-    // Another friction: the same grains where they are.
+    // Another friction: the same grains at the same places.
     const std::vector<Vec3> before = points_of(*simulation);
     Entity changed = document.entities[1];
     changed.attributes["friction_angle"] = 20.0;
@@ -210,7 +210,7 @@ TEST(Grains, RefuseJointsAndWhatDoesNotFit) {
     document.joints.push_back(joint);
     EXPECT_FALSE(Simulation::create(document, nullptr).ok());
 
-    // A thing that a joint holds stays what it is.
+    // A thing that a joint holds keeps its kind.
     document.entities[1].attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the pins of ropes hold: directions and twist, bodies, other ropes.
+// Degrees of freedom that pins of ropes hold: directions and twist, at bodies and other ropes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,8 +79,7 @@ TEST(RopePins, DiscOnARopeThatIsNotClampedTurnsOn) {
 }
 
 TEST(RopePins, WhatIsTwistedWakesWhatHangsOnIt) {
-    // It hangs still and sleeps; then the other end is turned by a motor, slower than anything that is noticed by
-    // speed.
+    // It hangs at rest and sleeps; then a motor turns the other end, more slowly than the speed that wakes it.
     Document document = disc_on_a_rope(true);
     document.entities[1].attributes["twist_rigidity"] = 0.5;
     document.entities[1].attributes["damping_rayleigh"] = 0.05;
@@ -153,7 +152,7 @@ TEST(SlackRope, KeepsWhatIsPinnedInItsMiddle) {
 }
 
 TEST(SlackRope, GoesAroundWhatStandsInItsWay) {
-    // A box under it, and made after it.
+    // A box below it, and made after it.
     Document document = slack_rope(1);
     Entity& box = samples::add(document, "Box", ShapeDefinition{physics::BoxShape{{0.2, 0.45, 0.05}}}, {0, 0.5, 0});
     box.attributes = {{"kind", to_value(attributes::PhysicalKind::static_body)}};

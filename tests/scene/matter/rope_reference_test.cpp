@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reference cases of ropes, all the way from a scene file.
+// Reference cases of ropes, from end to end with a scene file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::vector<Vec3> nodes_of(const Simulation& simulation) {
     return nodes;
 }
 
-// Along X, its middle at the origin but for the height.
+// A rope along X, its middle above the origin at this height.
 Entity& rope_of(Document& document, double half_length, double radius, double height) {
     document = samples::floor_and_box(height);
     Entity& rope = document.entities[1];
@@ -71,7 +71,7 @@ TEST(RopeReference, HangsAsACatenary) {
 }
 
 TEST(RopeReference, GripsADrumAsACapstan) {
-    // Two hands lay a rope over a drum, half of a turn, and draw it over: T₂/T₁ = exp(μ π).
+    // Two hands lay a rope over half a turn of a drum, and pull it: T₂/T₁ = exp(μ π).
     const double radius = 0.1, thickness = 2e-3, mu = 0.3, way = radius + thickness, straight = 0.2;
     const double half = way * pi / 2 + straight, height = 2;
     Document document;
@@ -99,7 +99,7 @@ TEST(RopeReference, GripsADrumAsACapstan) {
         ASSERT_TRUE(simulation->set_velocity(5, left / seconds, {}).ok());
         for (int i = 0; i < std::lround(60 * seconds); ++i) simulation->step();
     };
-    // Down on both sides, a little further than the rope is long, and then over.
+    // The hands move down on both sides, slightly further than the rope is long, and then pull it over.
     const double across = half - way, down = way + straight + 0.005 * half;
     lead({-across, -down, 0}, {across, -down, 0}, 4);
     lead({0, -0.05, 0}, {0, 0.05, 0}, 2.5);
@@ -107,7 +107,7 @@ TEST(RopeReference, GripsADrumAsACapstan) {
     for (int i = 0; i < 30; ++i) {
         lead({0, -0.02 / 60, 0}, {0, 0.02 / 60, 0}, 1.0 / 60);
         const auto tensions = simulation->world().rope_tensions(simulation->world().deformables().front());
-        // Node 0 is at the primitive's lower end, which lies on the left.
+        // Node 0 is at the primitive's lower end, which is on the left.
         const std::vector<Vec3> nodes = nodes_of(*simulation);
         std::size_t first = 0, last = nodes.size() - 1;
         while (nodes[first + 1].y < height) ++first;

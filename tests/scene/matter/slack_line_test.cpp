@@ -17,7 +17,7 @@ double length_of(const std::vector<Vec3>& line) {
 
 bool nothing(Vec3) { return false; }
 
-// Along X at the height of 2 m, from -1 to 1 m.
+// A line along X at the height of 2 m, from -1 to 1 m.
 std::vector<Vec3> level_line(int parts) {
     std::vector<Vec3> line;
     for (int i = 0; i <= parts; ++i) line.push_back({-1 + 2.0 * i / parts, 2, 0});
@@ -36,7 +36,7 @@ TEST(SlackLine, HasTheLengthThatTheSlackSaysAndHangsDown) {
             EXPECT_NEAR(distance(arc[i], arc[i - 1]), 0.01 * (1 + slack), 2e-3 * (1 + slack)) << i;
     }
     EXPECT_EQ(slack_line({.line = line}, nothing), line);
-    // One that stands upright has no side that is down: it goes aside.
+    // A vertical line has no downward side: the arc goes sideways.
     EXPECT_GT(length_of(slack_line({.line = {{0, 0, 0}, {0, 1, 0}, {0, 2, 0}}, .slack = 0.5}, nothing)), 2.1);
 }
 

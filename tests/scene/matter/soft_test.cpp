@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Entities of kind soft: made, changed while they move, held, taken away.
+// Entities of kind soft: made, changed while they move, held, removed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -213,7 +213,7 @@ TEST(SoftPins, HoldItInTheWorldAndToOtherThings) {
     EXPECT_LT(simulation->points(cushion)->center_of_mass().y, 2) << "the rest hangs";
     EXPECT_GT(simulation->points(cushion)->center_of_mass().y, 1);
 
-    // To the floor: it stays above it.
+    // Pinned to the floor, it stays above the floor.
     document.entities[1].pins = {{{0, -0.1, 0}, 0.3, EntityIndex{1}}};
     document.settings.gravity = {0, 5, 0};
     const auto tied = make(document);

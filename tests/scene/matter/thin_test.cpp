@@ -37,7 +37,7 @@ Document a_cloth(double height) {
     return document;
 }
 
-/// A floor and a rope of 2 m between two ends that it is pinned at, this high; its weight is 2 kg.
+/// A floor and a rope of 2 m between two ends that it is pinned at, this high; its mass is 2 kg.
 Document a_rope(double height, double slack) {
     Document document = samples::floor_and_box(height);
     Entity& rope = document.entities[1];
@@ -64,13 +64,13 @@ TEST(ClothEntity, WeighsByItsAreaAndFallsAsAnythingDoes) {
     EXPECT_NEAR(set->number("thickness", 0), 0.002, 1e-12);
     EXPECT_NEAR(set->number("mass", 0), 0.2, 1e-9);
     step(*simulation, 30);
-    // It begins with the speed that gravity gives in half a step.
+    // The initial velocity is that of half a step of gravity.
     const double expected = 5 - 9.81 / 8 - 9.81 / 120 / 2;
     EXPECT_NEAR(points->center_of_mass().y, expected, 1e-3);
     EXPECT_NEAR(simulation->pose(thing).position.y, expected, 1e-3);
 }
 
-// Of a level sheet, ρ/2 C v² = w g.
+// Terminal speed of a level sheet: ρ/2 C v² = w g.
 TEST(ClothEntity, FallsThroughAirAtTheSpeedAtWhichItCarries) {
     Document document = a_cloth(60);
     document.entities[1].attributes["bend_stiffness"] = 1.0;
@@ -104,7 +104,7 @@ TEST(ClothEntity, LiesOverABoxAndHangsDownAtItsSides) {
     EXPECT_LT(highest, 0.53);
     EXPECT_LT(lowest, 0.4);
     EXPECT_GT(lowest, 0.1) << "of what hangs over, 20 cm at the sides and 28 at the corners";
-    // A ray from above meets it, and one from below, under its edge.
+    // A ray from above hits it, and so does one from below, under its edge.
     const auto hit = simulation->cast_ray({0, 3, 0}, {0, -1, 0}, 10);
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->entity, thing);
@@ -146,7 +146,7 @@ TEST(ClothEntity, WhatIsThickStaysRigidAndSaysWhy) {
     EXPECT_NE(simulation->notes()[0].find("no rope"), std::string::npos) << simulation->notes()[0];
 }
 
-// A box as thick as this is no sheet; it weighs as cloth of its face would, not as 64 litres of something solid.
+// A box this thick is no sheet; its mass is that of cloth of its face, not of 64 litres of something solid.
 TEST(ClothEntity, WhatStaysRigidWeighsByItsAreaOrLengthAllTheSame) {
     Document document = a_cloth(0.5);
     Entity& entity = document.entities[1];
@@ -191,7 +191,7 @@ TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
             }
         }
     }
-    // Triangles weigh by the face of their box.
+    // The mass of triangles is by the face of their box.
     Entity sheet;
     sheet.geometry =
         ShapeDefinition{physics::MeshShape{{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 3, 2}}}};
@@ -213,7 +213,7 @@ TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
         changed.attributes["kind"] = to_value(kind);
         const auto updated = simulation->update(changed, true);
         ASSERT_TRUE(updated) << to_text(kind) << ": " << updated.error().message();
-        // It is too thin to be soft and no rope: rigid then, with a note.
+        // It is too thin to be soft and no rope: then it is rigid, with a note.
         const bool has_points = simulation->points(thing) != nullptr;
         if (kind == PhysicalKind::cloth) {
             EXPECT_TRUE(has_points);
@@ -224,7 +224,7 @@ TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
         step(*simulation, 3);
         time += 0.05;
     }
-    // Two thousand grains as small as it is thick do not fill it.
+    // Two thousand grains with its thickness as diameter do not fill it.
     Entity grains = document.entities[1];
     grains.attributes["kind"] = to_value(PhysicalKind::granular);
     const auto refused = simulation->update(grains, true);
@@ -234,7 +234,7 @@ TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
     EXPECT_GT(simulation->pose(thing).position.y, 5 - 9.81 / 2 * time * time - 0.1);
 }
 
-// The sag f of a rope that is longer than its span d by a small share s: s = 8/3 (f/d)².
+// Sag f of a rope that is longer than its span d by a small fraction s: s = 8/3 (f/d)².
 TEST(RopeEntity, HangsAsDeepAsItsSlackSays) {
     const auto simulation = make(a_rope(3, 0.1));
     ASSERT_TRUE(simulation);
@@ -249,7 +249,7 @@ TEST(RopeEntity, HangsAsDeepAsItsSlackSays) {
     step(*simulation, 300);
     EXPECT_NEAR(lowest(), 3 - sag, 0.05) << "as it stays";
 
-    // Its ends are pulled by half of its weight each, upwards, and by w d²/8f along.
+    // Each end carries half of its weight upwards, and w d²/8f along.
     const auto handle = simulation->world().deformables().front();
     const auto tensions = simulation->world().rope_tensions(handle);
     const double along = 2 * 9.81 / 2.2 * 4 / (8 * sag);
@@ -290,7 +290,7 @@ using ThinSession = samples::LiveSession;
 
 TEST_F(ThinSession, ABrokenRopeIsToldOnceAndReset) {
     Document document = a_rope(3, 0.1);
-    document.entities[1].attributes["break_tension"] = 12.0;  // its ends bear 15 N
+    document.entities[1].attributes["break_tension"] = 12.0;  // its ends carry 15 N
     open(document);
     (void)session_->take_events();
     run("simulation.step", {{"count", 30}});

@@ -20,7 +20,7 @@ using physics::ShapeDefinition;
 
 constexpr EntityIndex line = 2, hung = 3;
 
-// A rope of 2 m along X, 3 m up, pinned at both ends, and from its middle what hangs down 0.5 m.
+// A rope of 2 m along X, 3 m up, pinned at both ends, and a thing of this kind that hangs 0.5 m down from its middle.
 Document hung_on_a_line(PhysicalKind kind) {
     Document document = samples::floor_and_box(3);
     Entity& rope = document.entities[1];
@@ -71,7 +71,7 @@ TEST(Ties, GoWithTheirPinsAndComeWithTheThing) {
         const auto simulation = samples::make(document);
         ASSERT_TRUE(simulation);
         samples::step(*simulation, 60);
-        // The line is replaced by one of other nodes: what hangs there goes on hanging.
+        // A line with other nodes replaces the line: the thing stays hung on it.
         Entity other = document.entities[1];
         other.attributes["rope_segments"] = 30.0;
         ASSERT_TRUE(simulation->update(other, true).ok());
@@ -104,7 +104,7 @@ TEST_F(TiedSession, CopiesMadeTogetherAreTiedToEachOther) {
         run("entity.duplicate", {{"indices", {line, hung}}, {"offset", {0, 0, 2}}})["indices"];
     ASSERT_EQ(copies.size(), 2u);
     EXPECT_EQ(session_->document().find(copies[1])->pins[0].to, copies[0].get<EntityIndex>());
-    // A copy of one end only holds on to the same thing as the original.
+    // A copy of only the hung thing is held by the same thing as the original.
     const nlohmann::json one = run("entity.duplicate", {{"indices", {hung}}, {"offset", {0, 0, 0.3}}})["indices"];
     EXPECT_EQ(session_->document().find(one[0])->pins[0].to, line);
 }

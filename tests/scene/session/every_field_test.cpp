@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whatever field an entity or a document has: a change of it is told, undone, done again and saved. The fields are
-// those of the lists (scene/document/field_list.h), so that a new one is tried as soon as it is there.
+// For every field of an entity or a document: a change of it is told, undone, done again and saved. The fields are
+// those of the lists (scene/document/field_list.h), so that a new one is tested as soon as it is in a list.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ using MemberOf = typename std::remove_cvref_t<OneField>::Member;
 template <class OneField>
 constexpr bool is_saved = std::remove_cvref_t<OneField>::saved != Saved::never;
 
-/// Makes another value of a field, which a scene may have.
+/// Makes another valid value of a field.
 class OtherValue {
 public:
     explicit OtherValue(std::uint64_t seed) : random_(seed) {}
@@ -72,7 +72,7 @@ private:
     Random random_;
 };
 
-/// Shapes have no comparison of their own, and are compared by what is written of them.
+/// Shapes have no operator ==, and are compared by their JSON.
 bool are_alike(const Entity& a, const Entity& b) {
     bool alike = true;
     for_each_field<Entity>([&](const auto& field) {
@@ -93,7 +93,7 @@ class EveryField : public samples::LiveSession {
 protected:
     void SetUp() override { open(samples::floor_and_box()); }
 
-    /// What the last event of the document says of its first change.
+    /// The first change in the last event of the document.
     json told() {
         json change;
         for (const json& message : session_->take_events().messages)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one command may cost: a client must not be able to fill the memory or to keep the session for itself.
+// Cost limits of one command: a client must not be able to fill the memory or to block the session.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(Limits, VeryManyActionsOfOneCommandAreNotAllTold) {
     EXPECT_EQ(told, 1000);
     EXPECT_EQ(events.actions, 1500U);
 
-    // The next command starts afresh.
+    // The next command starts with the full limits.
     ASSERT_TRUE((*session)->execute("simulation.step", {{"count", 2}}).ok());
     EXPECT_EQ((*session)->take_events().actions, 2U);
 }

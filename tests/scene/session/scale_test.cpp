@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int few = 2500, many = 4 * few;
-/// Of the processor's time; what grows with the square takes sixteen times as much.
+/// Bound on the ratio of processor times; quadratic growth has a ratio of sixteen.
 constexpr double most_growth = 8;
 
 json sphere_at(int number) {
@@ -40,7 +40,7 @@ json first_indices(int count) {
     return indices;
 }
 
-/// A session on a scene of so many entities; what `prepare` does is not counted, what `work` does is, s of processor.
+/// A session on a scene with `count` entities; the processor time (s) of `work` is measured, that of `prepare` is not.
 class Scale : public samples::LiveSession {
 protected:
     using Part = std::function<void(int count)>;
@@ -61,7 +61,7 @@ protected:
     void expect_linear(const Part& prepare, const Part& work) {
         const double small = seconds(few, prepare, work), large = seconds(many, prepare, work);
         std::printf("%d: %.0f ms, %d: %.0f ms, %.1f times\n", few, 1e3 * small, many, 1e3 * large, large / small);
-        // Less than that is lost in what the clock can tell.
+        // Shorter times are below the resolution of the clock.
         EXPECT_LT(large, std::max(most_growth * small, 0.1));
     }
     void load(int count) { run("scene.load", {{"scene", scene_of(count)}}); }
@@ -123,7 +123,7 @@ TEST_F(Scale, DeletingManyThatTouch) {
 }
 
 TEST_F(Scale, DeletingOneByOne) {
-    // Each moves what follows it in the list, which is little; whatever looked at every entity would show.
+    // Each command moves the entities behind it in the list, which is cheap; a search over all entities would show.
     expect_linear([this](int count) { load(count); },
                   [this](int count) {
                       for (int i = count; i > 0; --i) run("entity.remove", {{"indices", {i}}});

@@ -207,7 +207,7 @@ TEST_F(SessionTest, UndoAndRedoOfRandomEditsGiveTheIdenticalDocument) {
             }
         }
 
-        // Back to the start, each undo to a state that was there; then forward to the end.
+        // Back to the start, each undo to an earlier state; then forward to the end.
         const json last = document();
         std::size_t steps = 0;
         while (!run("edit.undo")["undone"].is_null()) {
@@ -281,7 +281,7 @@ TEST_F(SessionTest, DropsWhatIsAddedOntoTheSurfaceUnderThePointer) {
     EXPECT_NEAR(where(on_table).y, 1.2, 2e-3);
     EXPECT_NEAR(where(on_table).x, 0.1, 1e-9);
 
-    // Beside the table on the floor, and against its side.
+    // Placed beside the table on the floor, and against its side.
     const json beside = {{"origin", {3, 5, 0}}, {"direction", {0, -1, 0}}};
     const EntityIndex on_floor = run("entity.add", {{"entity", ball}, {"drop", beside}})["index"];
     EXPECT_NEAR(where(on_floor).y, 0.2, 2e-3);
@@ -290,7 +290,7 @@ TEST_F(SessionTest, DropsWhatIsAddedOntoTheSurfaceUnderThePointer) {
     EXPECT_NEAR(where(at_side).x, -0.7, 6e-3);
     EXPECT_NEAR(where(at_side).y, 0.2, 2e-3) << "it stands on the floor before the side";
 
-    // Nothing is hit: it still comes to lie somewhere finite.
+    // Nothing is hit: it is still placed at a finite position.
     const json sky = {{"origin", {0, 2, 0}}, {"direction", {0, 1, 0}}};
     EXPECT_TRUE(is_finite(where(run("entity.add", {{"entity", ball}, {"drop", sky}})["index"])));
     (void)table;
@@ -335,7 +335,7 @@ TEST_F(SessionTest, AGrabPullsAPointToItsTargetAndHoldsIt) {
         session_->step();
         highest = std::max(highest, where(box).y);
     }
-    // It hangs below the point that is held, and never shot over it.
+    // It hangs below the point that is held, and never rose above it.
     EXPECT_LT(highest, 2.1);
     EXPECT_NEAR(where(box).x, 1, 0.1);
     EXPECT_NEAR(where(box).y, 2 - std::sqrt(3) * 0.25, 0.1);
@@ -417,7 +417,7 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     EXPECT_EQ(run("hello")["unsaved"], false) << "undone to what is on disk";
     run("edit.redo");
 
-    // An autosave lies beside it until it is saved.
+    // An autosave is beside it until it is saved.
     ASSERT_TRUE(session_->autosave().ok());
     const json edited = document();
     const auto kinds = [this] {
@@ -438,7 +438,7 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     run("scene.load", {{"scene", before}});
     EXPECT_EQ(document(), before);
 
-    // What can't be opened leaves the open scene as it is.
+    // A file that can't be opened leaves the open scene unchanged.
     EXPECT_NE(error_of("scene.load", {{"name", "none"}}), "accepted");
     EXPECT_NE(error_of("scene.load", {{"scene", {{"embody_scene", 3}}}}), "accepted");
     EXPECT_EQ(document(), before);
@@ -460,7 +460,7 @@ TEST_F(SessionTest, DifferentNamesAreDifferentScenes) {
         EXPECT_EQ(document()["title"], "title of " + name);
         EXPECT_EQ(run("hello")["name"], name);
     }
-    // All of them are files of the one folder.
+    // All of them are files in the same folder.
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "saved"), fs::directory_iterator()),
               static_cast<std::ptrdiff_t>(names.size()));
 }
@@ -520,7 +520,7 @@ TEST_F(SessionTest, DraftsOfKilledSavesGoAtTheNextStart) {
     const fs::path others[] = {folder_ / "saved" / "kept.json.backup", folder_ / "saved" / "notes.txt"};
     for (const fs::path& other : others) std::ofstream(other) << "mine";
 
-    // The third one is being written by a running program.
+    // A running program is writing the third one.
     const int writer = open(drafts[2].c_str(), O_WRONLY);
     ASSERT_EQ(flock(writer, LOCK_EX | LOCK_NB), 0);
     session_ = make();
@@ -534,7 +534,7 @@ TEST_F(SessionTest, DraftsOfKilledSavesGoAtTheNextStart) {
     EXPECT_FALSE(fs::exists(drafts[2]));
 }
 
-// What physics refuses at the opening is told with file, entity and the field as the file spells it.
+// A refusal of physics at the opening names file, entity and the field as in the file.
 TEST_F(SessionTest, WhatPhysicsRefusesIsToldByFileEntityAndField) {
     const json ball = {{"index", 7}, {"name", "Ball"}, {"shape", {{"type", "sphere"}, {"radius", 0.1}}}};
     const json box = {{"index", 9}, {"shape", {{"type", "box"}, {"half_extents", {1, 1, 1}}}}};
@@ -576,7 +576,7 @@ TEST_F(SessionTest, WhatPhysicsRefusesIsToldByFileEntityAndField) {
         EXPECT_EQ(error_of("scene.load", {{"scene", scene}}) == "accepted", told == "accepted");
     }
 
-    // A saved one by its file.
+    // A saved scene is named by its file.
     json scene = right;
     scene["entities"][0]["pose"] = {{"position", {0, 1e12, 0}}};
     fs::create_directories(folder_ / "saved");
@@ -585,7 +585,7 @@ TEST_F(SessionTest, WhatPhysicsRefusesIsToldByFileEntityAndField) {
     EXPECT_EQ(error_of("scene.load", {{"name", "wrong"}}).find(file.string() + ": entity 7 (Ball): pose"), 0u);
 }
 
-// An anchor in range is far from an entity that is at the other end of the world.
+// An anchor inside its range, but too far from an entity at the other end of the world.
 TEST_F(SessionTest, AnAnchorThatIsTooFarFromItsEntityIsToldAsAnAnchor) {
     const json scene = {
         {"embody_scene", 1},
@@ -599,7 +599,7 @@ TEST_F(SessionTest, AnAnchorThatIsTooFarFromItsEntityIsToldAsAnAnchor) {
 TEST_F(SessionTest, ARefusedEditLeavesDocumentAndWorldAlone) {
     const EntityIndex box = add_box({0, 1, 0});
     const json before = document();
-    // A plane can't move: the world refuses what the reader can't see.
+    // A plane can't move: the world refuses something that the reader can't check.
     EXPECT_NE(
         error_of("entity.update",
                  {{"index", box}, {"entity", {{"shape", {{"type", "plane"}}}, {"attributes", {{"kind", "rigid"}}}}}}),

@@ -12,8 +12,8 @@ namespace {
 
 constexpr EntityIndex box = 2, other = 3;
 
-// A box that falls on the floor from 0.5 m, lands after about a third of a second, and then sleeps; a quiet ball far
-// away on the floor, and a signal that is given in the tenth step.
+// A box that falls on the floor from 0.5 m, lands after about a third of a second, and then sleeps; a ball at rest far
+// away on the floor, and a signal in the tenth step.
 Document scene_with(const Trigger& trigger, const Effect& effect, const Target& receiver) {
     Document document = samples::floor_and_box(0.75);
     samples::add(document, "Ball", physics::SphereShape{0.2}, {4, 0.2, 0}).category = "toy";
@@ -121,7 +121,7 @@ TEST(Actions, EveryTriggerStartsEveryEffect) {
     for (const NamedTrigger& trigger : triggers) {
         for (const NamedEffect& effect : effects) {
             Document document = scene_with(trigger.trigger, effect.effect, {Target::By::index, other, {}});
-            // Only what bounces lets go of the floor again.
+            // Only a bouncing body ends its contact with the floor.
             if (std::holds_alternative<OnContactEnd>(trigger.trigger))
                 document.find(box)->attributes["restitution"] = 0.9;
             if (std::holds_alternative<OnFallAsleep>(trigger.trigger))
@@ -166,7 +166,7 @@ TEST(Actions, RepeatAsOftenAsTheySayAndOnceIsOnce) {
 }
 
 TEST(Actions, ASpawnThatTriggersItselfEnds) {
-    // Each new ball touches the floor and so calls for another.
+    // Each new ball touches the floor and so spawns another one.
     Document document = samples::floor_and_box(0.3);
     Action action;
     action.id = 1;

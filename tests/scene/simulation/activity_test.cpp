@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the status bar counts: things, whatever they are made of.
+// The counts in the status bar: things, whatever they are made of.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -53,7 +53,7 @@ TEST(Activity, CountsAThingOnceWhateverItIsMadeOf) {
 TEST(Activity, IsToldToClientsAndFollowsWhatComesToRest) {
     auto session = Session::create(nullptr, {}).value();
     Document document = one_of_each();
-    // What comes to rest at once: the box, the heap's hundred balls, the cushion.
+    // Things that come to rest at once: the box, the pile's hundred balls, the cushion.
     std::erase_if(document.entities, [](const Entity& entity) {
         return entity.name == "cloth" || entity.name == "rope" || entity.name == "fluid";
     });

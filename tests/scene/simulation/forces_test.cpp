@@ -24,7 +24,7 @@ constexpr double seconds = 0.2;
 
 class ForceOnAKind : public testing::TestWithParam<PhysicalKind> {
 protected:
-    // One thing alone in empty space.
+    // A document with one thing alone in empty space.
     static Document a_thing() {
         Document document = samples::floor_and_box(1);
         document.entities.erase(document.entities.begin());
@@ -44,7 +44,7 @@ protected:
     }
     static void expect_momentum_of(const Simulation& simulation) {
         const Vec3 expected = seconds * force, momentum = simulation.world().conserved().linear_momentum;
-        // What leaps from half step to half step has half a step more or less.
+        // Leapfrog integration has half a step more or less.
         EXPECT_LT(length(momentum - expected), 0.51 / steps * length(expected))
             << momentum.x << " " << momentum.y << " " << momentum.z;
         EXPECT_LT(length(cross(momentum, expected)), 1e-3 * length_squared(expected)) << "along the force";
@@ -59,7 +59,7 @@ TEST_P(ForceOnAKind, OfItsOwnGivesItsMomentum) {
     step(*simulation, steps);
     expect_momentum_of(*simulation);
 
-    // Where it has none any more it goes on as it does.
+    // Without force it keeps its velocity.
     Entity without = *simulation->definition(thing);
     without.force = {};
     ASSERT_TRUE(simulation->update(without, true));

@@ -51,7 +51,7 @@ TEST_F(Recording, RefusesWhatItCanNotWrite) {
     EXPECT_FALSE(Recorder::create(folder_ / "none" / "out.jsonl", document, {}).ok());
     EXPECT_FALSE(Recorder::create(folder_ / "out.jsonl", document, {.rate = 0}).ok());
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-    // A full disk is told at the header already.
+    // A full disk is an error already at the header.
     EXPECT_FALSE(Recorder::create("/dev/full", document, {}).ok());
 }
 
@@ -103,7 +103,7 @@ TEST(DemoScenes, OfPrimitivesRunAndComeToRest) {
         }
         const physics::StepReport& report = simulation.value()->world().last_report();
         EXPECT_EQ(report.bodies_active + report.bodies_wanting_to_sleep, 0u) << name;
-        // Every domino falls: the push, the bell, the ball and the sleeper.
+        // Every domino falls: the actions of the push, the bell, the ball and the sleeper fire.
         if (std::string(name) == "dominoes") {
             EXPECT_EQ(fired, 4u);
         }

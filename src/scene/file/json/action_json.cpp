@@ -15,7 +15,7 @@ Result<Action> action_from_json(const json& value, const std::string& where) {
     read_whole(reader, action);
     if (error) return *error;
 
-    // What repeats is not over after the first time, unless the file says so.
+    // A repeated action is not over after the first time, unless the file says so.
     const auto* at = std::get_if<AtTime>(&action.trigger);
     if (!value.contains("once")) action.once = !(at && at->repeat_every);
     return action;

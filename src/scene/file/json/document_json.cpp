@@ -26,7 +26,7 @@ bool is_format(FieldReader& reader) {
     return false;
 }
 
-// Gives what came without a number the next free one, sorts, and refuses a number twice.
+// Gives items without a number the next free ones, sorts them, and refuses a number that occurs twice.
 template <class Item, class Number>
 bool number_items(FieldReader& reader, const char* list, std::vector<Item>& items, Number Item::*number, Number& next) {
     std::set<Number> taken;
@@ -80,7 +80,8 @@ Result<Document> document_from_json(const json& value) {
                          " that a scene can have",
                      "split the scene"};
     // Entities first: joints name them.
-    reader.whole("next_index", document.next_index, 1, last_document_index + 1);  // that one: none is left
+    reader.whole("next_index", document.next_index, 1,
+                 last_document_index + 1);  // the upper bound means that no index is left
     read_list(reader, "entities", document.entities, entity_from_json);
     if (error || !number_items(reader, "entities", document.entities, &Entity::index, document.next_index))
         return *error;

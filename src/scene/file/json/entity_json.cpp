@@ -18,7 +18,7 @@ Result<void> change_entity_from_json(Entity& entity, const json& value, const st
         if (changed.index != 0 && changed.pins[i].to == changed.index)
             reader.fail(element_path(reader.path("pins"), i) + ".to", "must be another entity");
     if (!reader.finish()) return *error;
-    // Last, so that a slip in the field's name is told as such.
+    // Checked last, so that a wrong name of the field is reported as such.
     if (is_new && !value.contains("model") && !value.contains("shape"))
         return Error{reader.path("model"), "is missing: an entity needs a model or a shape"};
     if (!is_new && changed.index != entity.index) return Error{reader.path("index"), "of an entity can't be changed"};

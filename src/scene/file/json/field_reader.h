@@ -6,7 +6,7 @@
 
 namespace embody::scene {
 
-// Documents and commands are read as all JSON is.
+// Documents and commands use the reader of all JSON.
 using attributes::any_number;
 using attributes::element_path;
 using attributes::FieldReader;

@@ -100,7 +100,7 @@ void write_value(json& object, const char* name, const attributes::AttributeValu
     object[name] = attributes::to_json(value);
 }
 
-// All attributes at once.
+// Replaces all attributes.
 void read_value(FieldReader& reader, const char* name, NumberRange,
                 std::map<std::string, attributes::AttributeValue>& attributes) {
     const json* field = reader.take(name);
@@ -121,7 +121,7 @@ void write_value(json& object, const char* name, const std::map<std::string, att
     object[name] = std::move(manual);
 }
 
-// Null takes the colour away.
+// Null removes the colour.
 void read_value(FieldReader& reader, const char* name, NumberRange, std::optional<std::array<double, 3>>& color) {
     const json* field = reader.take(name);
     if (!field || !reader.ok()) return;
@@ -139,7 +139,7 @@ void write_value(json& object, const char* name, const std::optional<std::array<
     object[name] = color ? json(*color) : json(nullptr);
 }
 
-// An entity has one of the two.
+// An entity has either a model or a shape.
 void read_fields(FieldReader& reader, Geometry& geometry) {
     std::string key;
     const bool is_model = reader.text("model", key);

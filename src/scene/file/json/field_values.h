@@ -14,7 +14,7 @@
 
 namespace embody::scene {
 
-// Values of fields to JSON and back, as far as they are not made of others: a pair for each type.
+// JSON readers and writers of field values that are not made of others: a pair for each type.
 
 void write_value(nlohmann::json& object, const char* name, bool value);
 void write_value(nlohmann::json& object, const char* name, int value);
@@ -29,7 +29,7 @@ void write_value(nlohmann::json& object, const char* name, const std::optional<s
 void write_value(nlohmann::json& object, const char* name,
                  const std::map<std::string, attributes::AttributeValue>& attributes);
 
-// Each leaves the value as it is where the field is missing.
+// Each leaves the value unchanged where the field is missing.
 void read_value(FieldReader& reader, const char* name, NumberRange range, bool& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, int& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::uint32_t& value);
@@ -38,32 +38,32 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, std::s
 void read_value(FieldReader& reader, const char* name, NumberRange range, Vec3& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Transform& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Target& target);
-/// Of the attribute that the field "name" beside it names.
+/// A value of the attribute that the field "name" beside it names.
 void read_value(FieldReader& reader, const char* name, NumberRange range, attributes::AttributeValue& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::optional<std::array<double, 3>>& color);
 void read_value(FieldReader& reader, const char* name, NumberRange range,
                 std::map<std::string, attributes::AttributeValue>& attributes);
 
-/// A model's key or a shape, each under its own name.
+/// A model's key or a shape, each with its own field name.
 void write_fields(nlohmann::json& object, const Geometry& geometry);
 void read_fields(FieldReader& reader, Geometry& geometry);
 
-// What no field shows by itself.
+// Checks conditions between fields.
 void check_value(FieldReader& reader, const Bounds& box);
 void check_value(FieldReader& reader, const OnSignal& signal);
 void check_value(FieldReader& reader, const physics::JointLimit& limit);
 void check_value(FieldReader& reader, const physics::WorldSettings& settings);
 
-// The JSON that listed values are made of.
+// Building blocks of the JSON of listed values.
 
-/// Null under the name; an empty object or list under it; an empty object at the end of a list.
+/// Writes null under the name; an empty object or list under the name; an empty object at the end of a list.
 void write_null(nlohmann::json& object, const char* name);
 nlohmann::json& add_object(nlohmann::json& object, const char* name);
 nlohmann::json& add_list(nlohmann::json& object, const char* name);
 nlohmann::json& append_object(nlohmann::json& list);
-/// Reads a list's items one by one; whether it is there.
+/// Reads a list's items one by one; returns whether the list is there.
 bool read_items(FieldReader& reader, const char* name, const std::function<void(FieldReader& item)>& read);
-/// Which of the words stands under "type", which must be there.
+/// Index of the word in the field "type", which must be there.
 bool read_type(FieldReader& reader, std::span<const char* const> words, std::size_t& type);
 
 }  // namespace embody::scene

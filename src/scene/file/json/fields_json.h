@@ -15,9 +15,9 @@
 
 namespace embody::scene {
 
-// Listed values (scene/document/field_list.h) to JSON and back: their fields, and optional values, lists and listed
-// types under a name or beside their owner's fields. A field of a type that has no pair in field_values.h and is not
-// made of those that have does not compile.
+// JSON of listed values (scene/document/field_list.h): their fields, and optional values, lists and listed types under
+// a name or beside their owner's fields. A field does not compile if its type neither has a pair in field_values.h nor
+// is made of types that have one.
 
 template <class Value>
 void check_value(FieldReader&, const Value&) {}
@@ -33,7 +33,7 @@ void write_value(nlohmann::json& object, const char* name, const Value& value) {
     write_fields(add_object(object, name), value);
 }
 
-/// Null where there is none.
+/// Null for an empty optional.
 template <class Value>
 void write_value(nlohmann::json& object, const char* name, const std::optional<Value>& value) {
     if (value)
@@ -48,7 +48,7 @@ void write_value(nlohmann::json& object, const char* name, const std::vector<Ite
     for (const Item& item : items) write_fields(append_object(list), item);
 }
 
-/// Checks a value whose fields were read, and those whose fields stand beside them.
+/// Checks a value whose fields were read, and its members whose fields are beside its own.
 template <class Value>
 void check_fields(FieldReader& reader, const Value& value) {
     if constexpr (ListedVariant<Value>) {
@@ -62,7 +62,7 @@ void check_fields(FieldReader& reader, const Value& value) {
     }
 }
 
-/// The whole object; a slip in a field's name is told before what is wrong with all of it.
+/// Reads a whole object; a wrong field name is reported before errors of the object as a whole.
 template <class Value>
 void read_whole(FieldReader& reader, Value& value) {
     Value read = value;
@@ -88,7 +88,7 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, std::o
     if (reader.ok()) value = std::move(read);
 }
 
-/// All of them at once.
+/// Replaces the whole list.
 template <Listed Item>
 void read_value(FieldReader& reader, const char* name, NumberRange, std::vector<Item>& items) {
     std::vector<Item> read;
@@ -113,7 +113,7 @@ void read_field(FieldReader& reader, const OneField& field, Owner& owner) {
         read_value(reader, field.name, field.range, owner.*field.member);
 }
 
-/// As a scene file has it: what is as it would be anyway is not written.
+/// Writes the fields of a scene file: those with default values are left out.
 template <class Owner>
 void write_fields(nlohmann::json& object, const Owner& owner) {
     if constexpr (ListedVariant<Owner>) {
@@ -129,7 +129,7 @@ void write_fields(nlohmann::json& object, const Owner& owner) {
     }
 }
 
-/// As a message has it that tells of a change: also what was taken away, as null or empty.
+/// Writes the fields of a message about a change: removed values are written, too, as null or empty.
 template <class Owner>
 void write_all_fields(nlohmann::json& object, const Owner& owner) {
     for_each_field<Owner>([&](const auto& field) { write_field(object, field, owner); });
@@ -140,7 +140,7 @@ void set_alternative(Variant& value, std::size_t wanted, std::index_sequence<alt
     ((alternative == wanted ? void(value.template emplace<alternative>()) : void()), ...);
 }
 
-/// Lays the fields that are there over those of `owner`. Of a variant the word under "type" tells which it is.
+/// Reads the fields that are there over those of `owner`. The word in "type" selects the alternative of a variant.
 template <class Owner>
 void read_fields(FieldReader& reader, Owner& owner) {
     if constexpr (ListedVariant<Owner>) {

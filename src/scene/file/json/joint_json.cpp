@@ -13,7 +13,7 @@ using namespace embody::physics;
 
 namespace {
 
-// The joint with indices where people write the names of entities that only one has.
+// Replaces an entity's name by its index; the name must be unique.
 void replace_name(FieldReader& reader, json& joint, const char* name, const Document& document) {
     const auto field = joint.find(name);
     if (field == joint.end() || !field->is_string()) return;
@@ -38,7 +38,7 @@ void check_ends(FieldReader& reader, const SceneJoint& joint, const Document& do
     if (joint.entity_a == joint.entity_b) reader.refuse("entity_b", "must not be entity_a itself");
 }
 
-// The friendly form: a point and an axis in the world, where the entities stand in the document.
+// The form for people: a point and an axis in the world, with the entities at their poses in the document.
 struct Anchor {
     std::optional<Vec3> point;
     std::optional<Vec3> axis;
@@ -64,7 +64,7 @@ void put_at(FieldReader& reader, const Anchor& anchor, SceneJoint& joint, const 
     joint.definition.frame_a = a ? inverse(a->pose) * world : world;
     joint.definition.frame_b = inverse(document.find(joint.entity_b)->pose) * world;
 
-    // Checked here, since physics knows the frames alone.
+    // Checked here, since physics sees only the frames.
     if (const Result<void> in_range = check_vector("anchor", *anchor.point, largest_coordinate, "m"); !in_range)
         return reader.refuse(document_field(in_range.error().where), in_range.error().why);
     const auto is_near = [](const Transform& frame) {

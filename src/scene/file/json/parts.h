@@ -22,14 +22,14 @@ nlohmann::json transform_to_json(const Transform& transform);
 /// A float as the shortest decimal that reads back as the same float.
 nlohmann::json float_to_json(float value);
 
-/// As attributes/attribute_json.h reads it, with `where` as the place of the error.
+/// Read as by attributes/attribute_json.h, with `where` as the place of the error.
 Result<attributes::AttributeValue> attribute_from_json(const std::string& name, const nlohmann::json& json,
                                                        const std::string& where);
 
 Result<physics::ShapeDefinition> shape_from_json(const nlohmann::json& json, const std::string& where);
 nlohmann::json shape_to_json(const physics::ShapeDefinition& shape);
 
-/// Entities are named by index or by a name that only one of `document` has. The index is 0 where the field is missing.
+/// Entities are named by index or by a name that is unique in `document`. The index is 0 where the field is missing.
 Result<SceneJoint> joint_from_json(const nlohmann::json& json, const std::string& where, const Document& document);
 nlohmann::json joint_to_json(const SceneJoint& joint);
 
@@ -37,8 +37,8 @@ nlohmann::json joint_to_json(const SceneJoint& joint);
 Result<Action> action_from_json(const nlohmann::json& json, const std::string& where);
 nlohmann::json action_to_json(const Action& action);
 
-/// Lays the fields of `json` over `entity`; the index is kept. Only for an entity without geometry (`is_new`) is one
-/// needed.
+/// Reads the fields of `json` over those of `entity`; the index is kept. Only an entity without geometry (`is_new`)
+/// needs one in `json`.
 Result<void> change_entity_from_json(Entity& entity, const nlohmann::json& json, const std::string& where, bool is_new);
 
 }  // namespace embody::scene

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-// Fields that say what a thing is come before the others, which follow by the alphabet.
+// Fields that name a thing come first, the others in alphabetical order.
 constexpr std::array<std::string_view, 10> first_fields = {
     "embody_scene", "title", "description", "index", "id", "type", "name", "model", "settings", "next_index"};
 
@@ -23,7 +23,7 @@ std::size_t rank(std::string_view field) {
 
 std::string plain_text(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-// One line if nothing but numbers and words is inside, or lists of numbers within a short line.
+// Printed on one line if it has only numbers and words, or lists of numbers within a short line.
 bool is_flat(const json& value) {
     if (!value.is_structured()) return true;
     return std::all_of(value.begin(), value.end(), [](const json& inner) { return !inner.is_structured(); });
@@ -31,7 +31,7 @@ bool is_flat(const json& value) {
 
 void print(const json& value, std::size_t depth, std::string& out);
 
-// Numbers of long lists are wrapped by count, so that a heightfield is no single line of a megabyte.
+// Long lists of numbers are wrapped by count, so that a heightfield is not a single line of a megabyte.
 void print_list(const json& list, std::size_t depth, std::string& out) {
     const bool one_line = is_flat(list) && list.size() <= 16;
     const std::size_t a_line = is_flat(list) ? 16 : list.size() > 64 && is_flat(list.front()) ? 4 : 1;

@@ -6,8 +6,7 @@
 
 namespace embody::scene {
 
-/// The JSON as people like to read it: what names a thing first, short lists of numbers on one line. Ends with a
-/// newline.
+/// JSON for people: fields that name a thing first, short lists of numbers on one line. Ends with a newline.
 std::string print_json(const nlohmann::json& json);
 
 }  // namespace embody::scene

@@ -7,7 +7,8 @@
 
 namespace embody::scene {
 
-/// Makes the variant the alternative, with its defaults, whose `name` the field "type" says; false where it is none.
+/// Sets the variant to the alternative, with its defaults, whose `name` is in the field "type"; false where none has
+/// that name.
 template <class... Alternatives>
 bool read_alternative(FieldReader& reader, std::variant<Alternatives...>& variant) {
     std::size_t type = 0, alternative = 0;

@@ -104,7 +104,7 @@ void read_fields(FieldReader& reader, CompoundShape& compound) {
         child_reader.vector("position", child.local.position);
         child_reader.rotation("rotation", child.local.rotation);
         child_reader.need("type", "the kind of shape");
-        // Only convex shapes may be children; the wrong ones are not even in the list.
+        // Only convex shapes may be children; the list has no others.
         if (!read_alternative(child_reader, child.shape)) return;
         std::visit([&](auto& shape) { read_fields(child_reader, shape); }, child.shape);
         if (!child_reader.finish()) return;
@@ -167,7 +167,7 @@ Result<ShapeDefinition> shape_from_json(const json& value, const std::string& wh
     reader.finish();
     if (error) return *error;
 
-    // What a single field cannot show: four points without a volume, a triangle of no area …
+    // Errors that no single field shows: four points without a volume, a triangle without area …
     if (const Result<void> valid = physics::validate(shape); !valid.ok()) {
         Error refused = valid.error();
         refused.where = where + (refused.where.empty() ? "" : "." + document_field(refused.where));

@@ -5,7 +5,7 @@
 
 namespace embody::scene {
 
-// Scene files and commands are read as every other JSON that people write.
+// Scene files and commands use the parser of all JSON that people write.
 using attributes::parse_json;
 
 }  // namespace embody::scene

@@ -30,7 +30,7 @@ json float_to_json(float value) {
 Result<AttributeValue> attribute_from_json(const std::string& name, const json& value, const std::string& where) {
     Result<AttributeValue> read = attributes::value_from_json(name, value);
     if (read.ok()) return read;
-    // Name, type and range are the registry's to judge; the place is ours.
+    // The registry checks name, type and range; the place in the file is added here.
     Error refused = read.error();
     refused.where = where;
     return refused;

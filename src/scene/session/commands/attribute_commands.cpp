@@ -27,7 +27,7 @@ json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, c
         for (const char* field : {"low", "high"})
             if (!row.contains(field)) row[field] = nullptr;
 
-        // What the panel needs to edit it, and to go back.
+        // Data that the panel needs to edit the value, and to reset it.
         const AttributeDescription* description = attributes::describe(entry.name);
         if (description) {
             row["kind_label"] = description->kind_label;
@@ -49,7 +49,7 @@ json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, c
 
 namespace {
 
-// A new value for the name in each entity, or none.
+// Sets a new value of the attribute in each entity, or removes it.
 Result<json> change_attribute(SessionState& state, const std::vector<EntityIndex>& indices, const std::string& name,
                               const std::optional<attributes::AttributeValue>& value, const std::string& merge) {
     const AttributeDescription* description = attributes::describe(name);
@@ -104,7 +104,7 @@ struct ActingEntity {
     AttributeSet attributes;
 };
 
-// As it acts in the running world, spawned things too; else as the document says.
+// The entity as it is in the running world, spawned ones too; else as in the document.
 Result<ActingEntity> acting_entity(SessionState& state, EntityIndex index) {
     const Entity* entity = state.simulation->definition(index);
     if (!entity) entity = state.document.find(index);
@@ -139,7 +139,7 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     return json{{"attributes", std::move(rows)}};
 }
 
-// The triangles of static things are those that are drawn, and may be many: they are not told.
+// Triangles of static things are those that are drawn, and may be many: they are not sent.
 Result<json> tell_collision_shape(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -163,7 +163,7 @@ json corners_of(const std::vector<std::array<std::uint32_t, count>>& elements) {
     return corners;
 }
 
-// What carries the drawn form of an entity that changes it.
+// The mesh that deforms the drawn form of a deformable entity.
 Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);

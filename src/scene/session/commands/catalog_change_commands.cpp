@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t most_keys = 10'000;
 constexpr std::size_t most_name_bytes = 160;
-/// A history that is asked for holds at most so many changes: some megabytes.
+/// Maximum number of changes in one answer with the history: some megabytes.
 constexpr std::size_t most_told_changes = 20'000;
-/// A preview names the first; whoever wants all asks the history.
+/// Number of models that a preview names; the history has all.
 constexpr std::size_t most_listed = 20;
 
 // Reading
@@ -47,7 +47,7 @@ Result<std::vector<std::int64_t>> ids_of(const Catalog& catalog, const json& key
     return ids;
 }
 
-// {"keys": […]}, {"words", "category"} as a search has them, or {"all": true}: what changes everything is said aloud.
+// {"keys": […]}, {"words", "category"} as a search has them, or {"all": true}: changing everything must be explicit.
 Result<Catalog::ModelChoice> read_models(const Catalog& catalog, const json& models) {
     std::optional<Error> error;
     FieldReader reader(models, "models", error);
@@ -68,7 +68,7 @@ Result<Catalog::ModelChoice> read_models(const Catalog& catalog, const json& mod
     return Catalog::ModelChoice(std::move(ids).value());
 }
 
-// [{"name", "value"}…]; null goes back to the automatic value.
+// [{"name", "value"}…]; null resets to the automatic value.
 Result<std::vector<AttributeChange>> read_changes(const json& list) {
     std::optional<Error> error;
     if (!read_array(list, "attributes", error)) return *error;
@@ -91,10 +91,10 @@ Result<std::vector<AttributeChange>> read_changes(const json& list) {
     return changes;
 }
 
-// Telling
+// Messages
 // --------------------------------------------------------------------------------------------------------------
 
-// What the open scene has of the models: how many entities take the new values, and how many have one of their own.
+// Effect on the open scene: how many entities take the new values, and how many have a value of their own.
 json affected_entities(const SessionState& state, const ChangeReport& report) {
     std::set<std::string> keys;
     for (const catalog::ChangedModel& model : report.models) keys.insert(model.key);
@@ -241,8 +241,8 @@ Result<json> history(SessionState& state, const json& params) {
     return json{{"batches", std::move(list)}};
 }
 
-// The change that it is to stop is the command before it, which has ended by now: whoever runs the session looks out
-// for this one meanwhile.
+// The change to be stopped is the command before this one, which has ended by now: the owner of the session watches for
+// this command meanwhile.
 Result<json> stop(SessionState&, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -250,7 +250,7 @@ Result<json> stop(SessionState&, const json& params) {
     return json::object();
 }
 
-// One value of one model, given or taken back; a refusal is an error.
+// Sets or resets one value of one model; a refusal is an error.
 Result<json> change_one(SessionState& state, const json& params, bool gives_value) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);

@@ -16,7 +16,7 @@ Result<catalog::Catalog*> open_catalog(const SessionState& state) {
     return Error{"catalog", "no model database is open", "start with --database FILE"};
 }
 
-// As they act, and without what a person set.
+// The attributes in effect, and without those that a person set.
 Result<json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t id) {
     const Result<AttributeSet> acting = catalog.attributes(id);
     if (!acting.ok()) return acting.error();

@@ -13,13 +13,13 @@
 
 namespace embody::scene {
 
-/// One command of docs/protocol.md: reads its parameters strictly, does its work, gives its result.
+/// One command of docs/protocol.md: reads its parameters strictly, executes, and returns its result.
 struct Command {
     const char* name;
     Result<nlohmann::json> (*execute)(SessionState& state, const nlohmann::json& params);
 };
 
-// One list a family, one file each.
+// One list for each family of commands, each in one file.
 std::span<const Command> catalog_commands();
 std::span<const Command> catalog_change_commands();
 std::span<const Command> scene_commands();
@@ -33,13 +33,13 @@ std::span<const Command> simulation_commands();
 bool need_text(FieldReader& reader, const char* name, const char* what, std::string& value);
 bool need_index(FieldReader& reader, const char* name, EntityIndex& value);
 bool need_vector(FieldReader& reader, const char* name, const char* what, Vec3& value);
-/// Entities of the document, each once, ascending; at least one.
+/// Reads indices of entities of the document, each once, ascending; at least one.
 bool need_indices(FieldReader& reader, const SessionState& state, std::vector<EntityIndex>& indices);
 
 /// Ends a command that has no result.
 Result<nlohmann::json> done(const Result<void>& result);
 
-/// The rows of the properties panel: protocol's AttributeEntry. `own` tells whether a name is overridden.
+/// The rows of the properties panel: the protocol's AttributeEntry. `own` tells whether a name is overridden.
 nlohmann::json attribute_rows(const attributes::AttributeSet& acting, const attributes::AttributeSet& automatic,
                               const std::vector<std::string>& own);
 
@@ -48,7 +48,7 @@ Result<catalog::Catalog*> open_catalog(const SessionState& state);
 /// The rows of a model of the catalogue.
 Result<nlohmann::json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t id);
 
-/// Where `entity` comes to lie when it is dropped where the ray meets the scene. It is not in the simulation.
+/// Pose of `entity` when it is dropped where the ray hits the scene. It is not in the simulation.
 Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction);
 
 }  // namespace embody::scene

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-// What a person would call it.
+// The name that a person would use.
 Result<std::string> usual_name(SessionState& state, const Entity& entity) {
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
         std::string name = physics::shape_name(*shape);
@@ -52,7 +52,7 @@ Result<json> add(SessionState& state, const json& params) {
     Result<Entity> read = entity_from_json(*given, "entity");
     if (!read.ok()) return read.error();
 
-    // Its own index and name.
+    // The new entity gets its own index and name.
     Entity entity = std::move(read).value();
     if (entity.index != 0) return Error{"entity.index", "is given by the session", "leave it out"};
     if (Result<void> room = check_room(state.document, 1); !room.ok()) return room.error();
@@ -63,7 +63,7 @@ Result<json> add(SessionState& state, const json& params) {
         entity.name = state.lookup.names.free_name(name.value());
     }
 
-    // Where the pointer is.
+    // Placed at the pointer.
     if (origin) {
         Result<Transform> pose = place_on_ray(state, entity, *origin, *direction);
         if (!pose.ok()) return pose.error();
@@ -84,7 +84,7 @@ Result<json> remove(SessionState& state, const json& params) {
     need_indices(reader, state, indices);
     if (!reader.finish()) return *error;
 
-    // Joints and pins first: undo runs backwards and needs their ends there.
+    // Joints and pins first: undo goes in the reverse order and needs the entities at their ends.
     Edit edit = state.start_edit("Delete " + state.called(indices));
     const auto goes = [&indices](EntityIndex index) {
         return std::binary_search(indices.begin(), indices.end(), index);
@@ -168,7 +168,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
     reader.vector("offset", offset);
     if (!reader.finish()) return *error;
 
-    // Beside the originals, free of them.
+    // Placed beside the originals, without overlap.
     if (!offset) {
         Bounds all;
         for (const EntityIndex index : indices) {
@@ -186,7 +186,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
     for (const EntityIndex index : indices) {
         Entity copy = *state.document.find(index);
         copy.index = copy_of.at(index);
-        // What is copied together holds on to each other as the originals do.
+        // Pins between copied things lead to the copies, as between the originals.
         for (Pin& pin : copy.pins)
             if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
         if (!copy.name.empty()) copy.name = names.free_name(copy.name);
@@ -195,7 +195,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
         copies.push_back(copy.index);
         edit.changes.emplace_back(EntityChange{std::nullopt, std::move(copy)});
     }
-    // The commit gives them their names for good.
+    // The commit assigns their final names.
     for (const Change& change : edit.changes) names.remove(std::get<EntityChange>(change).after->name);
     if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
     return json{{"indices", std::move(copies)}};

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 namespace {
 
-// The fields of the scene file, plain or in an object of this name.
+// The fields of the scene file, directly in the params or in an object of this name.
 const json& inner_or_self(const json& params, const char* name) {
     if (params.is_object() && params.size() == 1 && params.contains(name) && params.at(name).is_object())
         return params.at(name);

@@ -16,17 +16,17 @@ using nlohmann::json;
 namespace {
 
 constexpr double farthest = 1e4;        // m, of a pointer's ray
-constexpr double clearance = 1e-4;      // m, left between a thing and what it is laid on
-constexpr double wall_gap = 0.005;      // m, before a wall: nearer, it would count as touching on the way down
-constexpr double steepest_floor = 0.5;  // cosine: up to 60° a surface is one to lie on
+constexpr double clearance = 1e-4;      // m, between a thing and the surface that it is placed on
+constexpr double wall_gap = 0.005;      // m, before a wall: closer, it would count as touching on the way down
+constexpr double steepest_floor = 0.5;  // cosine: a surface up to 60° steep counts as a floor
 
-// An entity put into the running world for a moment, to be measured there.
+// An entity that is in the running world only while it is measured.
 class Probe {
 public:
     static Result<void> put(SessionState& state, const Entity& entity, std::optional<Probe>& probe) {
         Entity still = entity;
         still.enabled = true;
-        // What flows or bends is put down as the solid thing that it would be.
+        // A liquid, granular or deformable thing is placed as the solid thing that it would be.
         const Result<attributes::AttributeSet> set = state.definitions.attributes.acting(entity);
         if (set.ok() && changes_form(kind_of(set.value())))
             still.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
@@ -50,7 +50,7 @@ private:
     EntityIndex index_;
 };
 
-// What the ray meets; where it meets nothing, the ground at height 0, or a place in front of the viewer.
+// The surface that the ray hits; without a hit the ground at height 0, or a place in front of the viewer.
 struct Surface {
     Vec3 position;
     Vec3 normal{0, 1, 0};
@@ -63,7 +63,7 @@ Surface find_surface(const Simulation& simulation, Vec3 origin, Vec3 direction) 
     return {origin + direction * 5};
 }
 
-// Lowers the probe until it touches something; where it stands in something at first, from a bit higher.
+// Lowers the probe until it touches something; if it overlaps something at first, from slightly higher.
 Transform lower_until_touching(SessionState& state, Probe& probe, Transform pose) {
     const physics::World& world = state.simulation->world();
     for (const double lift : {0.002, 0.02, 0.1, 0.3, 1.0, 3.0}) {
@@ -72,7 +72,7 @@ Transform lower_until_touching(SessionState& state, Probe& probe, Transform pose
         probe.move_to(lifted);
         const std::optional<double> drop = world.drop_distance(probe.body(), lift + 0.05);
         if (!drop) {
-            // Nothing below: the surface was met at the rim only.
+            // Nothing below: the ray hit only the rim of the surface.
             return pose;
         }
         if (*drop <= 1e-6) continue;
@@ -95,13 +95,13 @@ Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 o
     const Bounds bounds = probe->bounds();
     if (bounds.is_empty() || !is_finite(bounds.size())) return pose;
 
-    // On a floor: the lowest point at the surface.
+    // Floor: the lowest point goes on the surface.
     if (surface.normal.y > steepest_floor) {
         pose.position.y += surface.position.y - bounds.lower.y;
         return lower_until_touching(state, *probe, pose);
     }
 
-    // Under a ceiling or at a wall: pushed off along the normal, by what of the bounds would be behind the surface.
+    // Ceiling or wall: moved along the normal, by the part of the bounds that would be behind the surface.
     const Vec3 half = bounds.half_extents();
     const Vec3 n = surface.normal;
     const double reach = std::fabs(n.x) * half.x + std::fabs(n.y) * half.y + std::fabs(n.z) * half.z;
@@ -110,7 +110,7 @@ Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 o
     const std::string usual_place = set.ok() ? set.value().word("placement", "floor") : "floor";
     if (n.y < -steepest_floor || usual_place == "wall" || usual_place == "ceiling") return pose;
 
-    // What belongs on a floor stands in front of the wall.
+    // A thing whose placement is the floor stands in front of the wall.
     probe->move_to(pose);
     const std::optional<double> drop = state.simulation->world().drop_distance(probe->body(), farthest);
     if (drop && *drop > 1e-6) pose.position.y -= std::max(0.0, *drop - clearance);
@@ -126,7 +126,7 @@ Result<json> drop_to_floor(SessionState& state, const json& params) {
     need_indices(reader, state, indices);
     if (!reader.finish()) return *error;
 
-    // The lowest first: what lies on it follows.
+    // The lowest first: things on it follow.
     Simulation& simulation = *state.simulation;
     const auto bottom = [&](EntityIndex index) { return simulation.bounds(index).lower.y; };
     std::stable_sort(indices.begin(), indices.end(),

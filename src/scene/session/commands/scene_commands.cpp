@@ -20,12 +20,12 @@ namespace {
 
 constexpr int frame_version = 2;
 
-// Everything that a client needs to draw the scene and go on from there.
+// Everything that a client needs to draw the scene and to follow it.
 Result<json> hello(SessionState& state, const json& params) {
     if (!params.is_null() && !(params.is_object() && params.empty())) return Error{"params", "hello takes none"};
     const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
 
-    // What is in the world but not in the document, and the other way round.
+    // Entities in the world but not in the document, and the reverse.
     json spawned = json::array(), despawned = json::array();
     for (const EntityIndex index : state.simulation->entities())
         if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
@@ -54,7 +54,7 @@ Result<json> make_new(SessionState& state, const json& params) {
     return done(state.open(new_document(title), ""));
 }
 
-// What physics refuses is told as in `place`, such as a file; empty where there is none.
+// A refusal of physics names the field in `place`, such as a file; empty where there is none.
 Result<json> open_document(SessionState& state, Document document, const std::string& name, const std::string& place) {
     if (Result<void> opened = state.open(std::move(document), name); !opened.ok())
         return in_place(place, opened.error());
@@ -73,7 +73,7 @@ Result<json> load(SessionState& state, const json& params) {
     if (int{by_name} + int{scene != nullptr} + int{by_text} != 1)
         return Error{"name", "say either a name, the scene itself, or the text of its file"};
 
-    // The document itself is on no disk: a field of it is a field of this command.
+    // The document is in no file: its fields are fields of this command.
     if (scene) {
         Result<Document> document = document_from_json(*scene);
         if (document.ok()) return open_document(state, std::move(document).value(), "", "");
@@ -113,7 +113,7 @@ Result<json> save(SessionState& state, const json& params) {
     if (!file.ok()) return file.error();
     if (Result<void> written = save_document(state.document, *file); !written.ok()) return written.error();
 
-    // What the autosave kept is safe now.
+    // The content of the autosave is saved now.
     std::error_code ignored;
     std::filesystem::remove(autosave_file(state.options, state.name.empty() ? state.document.title : state.name),
                             ignored);
@@ -139,7 +139,7 @@ Result<json> list(SessionState& state, const json& params) {
     return json{{"scenes", std::move(scenes)}};
 }
 
-// The fields of the document's heading and, beside them, those of its settings.
+// The fields of the document's heading, with those of its settings beside them.
 Result<json> settings(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);

@@ -9,7 +9,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uint32_t most_steps = 100'000;  // of one command: beyond, the caller waits for minutes
+constexpr std::uint32_t most_steps = 100'000;  // of one command: more would take minutes
 
 Result<void> read_nothing(const json& params) {
     std::optional<Error> error;
@@ -18,7 +18,7 @@ Result<void> read_nothing(const json& params) {
     return {};
 }
 
-// A run starts from the same world whatever was edited before, so that it repeats bit for bit.
+// A run starts from the same world, independent of earlier edits, so that it is bitwise reproducible.
 Result<void> leave_stop(SessionState& state) {
     if (state.play_state != PlayState::stopped || state.simulation_is_pristine) return {};
     return state.rebuild_simulation();
@@ -69,7 +69,7 @@ Result<json> keep(SessionState& state, const json& params) {
         if (pose != entity.pose) edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose});
     }
 
-    // From here on the document has these poses: the run is over.
+    // Now the document has these poses: the run is over.
     state.play_state = PlayState::stopped;
     if (Result<void> kept = state.commit(std::move(edit)); !kept.ok()) return kept.error();
     if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made.error();
