@@ -1,14 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fails where a name in src/physics has a word that docs/glossary.md replaces by the field's.
+"""Fails where a name in one of name_folders has a word that docs/glossary.md replaces by the field's.
 
 Usage: check_words.py [--comments] [ROOT]   (default: the folder above this file)
---comments: reads comments, too, for those of the words that have no everyday use (all but everyday_words).
+--comments: reads the comments of comment_folders, too, for those of the words that have no everyday use (all but
+everyday_words).
 """
 import pathlib
 import re
 import sys
 
+name_folders = ("src/physics",)
+comment_folders = (
+    "src",
+    "tests/attributes",
+    "tests/evaluation",
+    "tests/scene",
+)
 everyday_words = {"give", "patient", "share", "shares", "way", "ways"}  # banned in names alone
 
 
@@ -38,6 +46,10 @@ def comment_words_in(text: str) -> list[tuple[int, str]]:
             for word in re.findall(r"[A-Za-z]+", re.sub(r"`[^`]*`|\"(?:\\.|[^\"\\])*\"", "", line).partition("//")[2])]
 
 
+def sources_in(root: pathlib.Path, folders: tuple[str, ...]) -> list[pathlib.Path]:
+    return [p for folder in folders for p in sorted((root / folder).rglob("*")) if p.suffix in (".h", ".cpp")]
+
+
 def words_of(name: str) -> set[str]:
     return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
 
@@ -48,7 +60,8 @@ def main() -> int:
     root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parent.parent
     words, starts = banned_words(root / "docs" / "glossary.md")
     single = {word for word in words if "_" not in word}
-    files = [p for p in sorted((root / "src" / "physics").rglob("*")) if p.suffix in (".h", ".cpp")]
+    files = sources_in(root, name_folders)
+    commented = sources_in(root, comment_folders) if reads_comments else []
     wrong, checked = [], 0
     for path in files:
         for number, name in names_in(path.read_text()):
@@ -56,12 +69,13 @@ def main() -> int:
             start = name.split("_", 1)[0] if "_" in name.rstrip("_") else ""
             if name in words or words_of(name) & single or start in starts:
                 wrong.append(f"{path.relative_to(root)}:{number}: {name}: see docs/glossary.md")
-        for number, word in comment_words_in(path.read_text()) if reads_comments else []:
+    for path in commented:
+        for number, word in comment_words_in(path.read_text()):
             if word.lower() in single - everyday_words:
                 wrong.append(f"{path.relative_to(root)}:{number}: comment: {word}: see docs/glossary.md")
     for line in wrong:
         print(line)
-    print(f"{len(files)} files, {checked} names, {len(words) + len(starts)} words, {len(wrong)} wrong")
+    print(f"{len(files)} files, {checked} names, comments of {len(commented)} files, {len(words) + len(starts)} words, {len(wrong)} wrong")
     return 1 if wrong or checked == 0 or not words else 0
 
 
