@@ -129,11 +129,11 @@ std::string counted(double count) {
 
 void put_simulated_grains(AttributeSet& set, double volume, const Form& form) {
     const double grain = set.number("grain_diameter", 0.002), budget = set.number("grain_budget", 2000);
-    const double least = std::cbrt(6 * loose_packing * volume / (std::numbers::pi * budget));
+    const double min_diameter = std::cbrt(6 * loose_packing * volume / (std::numbers::pi * budget));
     const AttributeDescription& range = *describe("simulated_diameter");
     // At least one layer of grains must fit inside.
     const double largest = std::max(*range.low, 0.6 * std::min({form.size.x, form.size.y, form.size.z}));
-    const double diameter = std::min(std::max({grain, least, *range.low}), largest);
+    const double diameter = std::min(std::max({grain, min_diameter, *range.low}), largest);
     const double stands_for = std::pow(diameter / grain, 3);
     const std::string source = stands_for < 1.5 ? "of a grain"
                                                 : "each ball stands for " + counted(stands_for) + " grains, so that " +
@@ -146,11 +146,11 @@ void put_simulated_grains(AttributeSet& set, double volume, const Form& form) {
 void put_fluid_cells(AttributeSet& set, double volume) {
     // A step in which the liquid crosses several cells is cut into as many parts, so that small cells cost more than
     // their number says. Below this size the cells are only as small as a thousand particles need.
-    constexpr double usual_least = 0.006, fewest = 1000;
+    constexpr double usual_cell = 0.006, min_particles = 1000;
     const double budget = set.number("particle_budget", 20000);
     const auto cell_for = [volume](double particles) { return std::cbrt(8 * volume / particles); };
     const double by_budget = cell_for(budget);
-    const double cell = std::max(by_budget, std::min(usual_least, cell_for(std::min(fewest, budget))));
+    const double cell = std::max(by_budget, std::min(usual_cell, cell_for(std::min(min_particles, budget))));
     const std::string source = counted(8 * volume / (cell * cell * cell)) + " particles, eight in a cell, fill its " +
                                "volume of " + short_number(volume * 1000) + " litres" +
                                (cell > by_budget ? "; smaller cells would take many parts of a step" : "");
@@ -159,7 +159,7 @@ void put_fluid_cells(AttributeSet& set, double volume) {
 
 }  // namespace
 
-void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
+void put_resolution(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
     const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
     switch (matter_of(set)) {
         case Matter::none:

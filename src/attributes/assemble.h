@@ -29,7 +29,7 @@ inline constexpr double loose_packing = 0.55;
 /// Resolution of a thing that is simulated by many points: the diameter of the balls that stand for the grains of a
 /// granular thing (docs/physics/grains.md), the cell size of a liquid (docs/physics/fluids.md). Other kinds stay
 /// unchanged.
-void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form);
+void put_resolution(AttributeSet& set, const GeometryFacts& facts, const Form& form);
 
 /// Mass of a primitive (whose volume and size `facts` has) that is no rigid thing, and the attributes that follow:
 /// cloth by its area, a rope of a category by its length, liquids and bulk by their own density. A mass that a person

@@ -81,8 +81,8 @@ struct ReadNoun {
 
 // A noun that is hardly related to the tags may be a brand or an ornament.
 double trust_beside(const Surroundings& surroundings, const NounReading& reading) {
-    const auto kin = surroundings.kinship(reading.meaning);
-    return kin ? std::clamp(0.75 + 0.6 * (*kin - 0.15), 0.75, 1.05) : 1;
+    const auto common = surroundings.similarity(reading.meaning);
+    return common ? std::clamp(0.75 + 0.6 * (*common - 0.15), 0.75, 1.05) : 1;
 }
 
 Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const ReadNoun& read, std::size_t choice) {
@@ -91,16 +91,16 @@ Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const Rea
     // Only half of the doubt between readings counts, since the losing readings are often close in meaning to the
     // winner. A word that seldom means a physical thing is seldom the name of one.
     const double confidence = trust.noun * std::pow(a_step, static_cast<double>(reading.steps)) *
-                              (0.5 + 0.5 * reading.share) * (0.6 + 0.4 * std::min(1.0, 2 * read.noun.physical));
+                              (0.5 + 0.5 * reading.probability) * (0.6 + 0.4 * std::min(1.0, 2 * read.noun.physical));
     return {.category = &category,
-            .confidence = choice == 0 ? confidence : confidence * reading.share,
+            .confidence = choice == 0 ? confidence : confidence * reading.probability,
             .where = trust.where,
             .source = std::string(trust.where) + " says \"" + read.text + "\" → " + path_text(*data.nouns, reading),
             .phrase = read.text,
             .synset = data.nouns->name(reading.meaning),
             .steps = reading.steps,
             .reckoning = "noun of WordNet in the " + std::string(trust.where) + ", " + std::to_string(reading.steps) +
-                         " steps up, " + short_number(100 * reading.share) + " % of what it can mean here",
+                         " steps up, " + short_number(100 * reading.probability) + " % of what it can mean here",
             .level = level_of(category)};
 }
 
@@ -161,7 +161,7 @@ bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens
         if (meant && is_kind_of(*data.nouns, reading.meaning, *meant)) return false;
         return !is_kind_of_any(*data.nouns, reading.meaning, data.nouns->find_inflected(tokens[noun.end - 1].text));
     }
-    if (covers || !noun.is_plain || noun.physical < 0.6 || reading.share < 0.4) return false;
+    if (covers || !noun.is_plain || noun.physical < 0.6 || reading.probability < 0.4) return false;
     // Either the last noun of the same part, or a noun of an earlier part.
     return noun.segment == phrase.segment ? noun.first >= phrase.end : noun.segment < phrase.segment;
 }
@@ -296,14 +296,14 @@ void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, st
 // factor 2 outside the usual size changes nothing. Only candidates from `first` on are changed.
 void doubt_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found,
                          std::size_t first) {
-    constexpr double tolerated = 0.7, strength = 1.5, least = 0.05;
+    constexpr double tolerated = 0.7, strength = 1.5, min_factor = 0.05;
     const double largest = largest_extent(facts);
     if (!facts.size_is_stated || largest <= 0) return;
     for (Candidate& candidate : std::span(found).subspan(first)) {
         const auto model = candidate.category->model_entry;
         const double outside = outside_usual_size(model ? data.categories[*model] : *candidate.category, largest);
         if (outside <= tolerated) continue;
-        candidate.confidence *= std::max(std::exp(-strength * (outside - tolerated)), least);
+        candidate.confidence *= std::max(std::exp(-strength * (outside - tolerated)), min_factor);
         candidate.reckoning += "; such things have another size";
     }
 }

@@ -316,8 +316,9 @@ bool FieldReader::choice(const char* name, std::size_t& value, std::span<const c
         known.emplace_back(candidate);
         list += (list.empty() ? "" : ", ") + known.back();
     }
-    const std::string near = nearest_word(word, known);
-    fail(path(name), "\"" + word + "\" is not one of: " + list, near.empty() ? "" : "did you mean \"" + near + "\"?");
+    const std::string nearest = nearest_word(word, known);
+    fail(path(name), "\"" + word + "\" is not one of: " + list,
+         nearest.empty() ? "" : "did you mean \"" + nearest + "\"?");
     return false;
 }
 
@@ -325,12 +326,12 @@ bool FieldReader::finish() {
     if (error_ || !is_object_) return false;
     for (const auto& [name, value] : json_.items()) {
         if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-        const std::string near = nearest_word(name, known_);
+        const std::string nearest = nearest_word(name, known_);
         std::string all;
         for (auto known = known_.begin(); known != known_.end(); ++known)
             if (std::find(known_.begin(), known, *known) == known) all += (all.empty() ? "" : ", ") + *known;
         fail(path(name), "is not a field here",
-             near.empty() ? "fields here: " + all : "did you mean \"" + near + "\"?");
+             nearest.empty() ? "fields here: " + all : "did you mean \"" + nearest + "\"?");
         return false;
     }
     return true;

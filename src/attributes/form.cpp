@@ -20,15 +20,15 @@ Mat3 box_inertia(Vec3 size, double mass) {
 
 // Volume from the most exact source, never more than that of the box.
 void choose_volume(const GeometryFacts& facts, Form& form) {
-    const double most = form.box_volume * (1 + 1e-3);
-    const double least = std::max(form.box_volume * 1e-6, least_extent * least_extent * least_extent);
-    if (is_positive(facts.volume) && facts.volume <= most && facts.volume >= least) {
+    const double max_volume = form.box_volume * (1 + 1e-3);
+    const double min_volume = std::max(form.box_volume * 1e-6, min_extent * min_extent * min_extent);
+    if (is_positive(facts.volume) && facts.volume <= max_volume && facts.volume >= min_volume) {
         form.volume = std::min(facts.volume, form.box_volume);
         form.volume_is_own = true;
         form.volume_level = facts.closed ? AttributeLevel::measured : AttributeLevel::model;
         form.volume_source = facts.closed ? "closed surface" : "surface that is not closed";
         if (!facts.volume_method.empty()) form.volume_source += ", " + facts.volume_method;
-    } else if (is_positive(facts.hull_volume) && facts.hull_volume <= most && facts.hull_volume >= least) {
+    } else if (is_positive(facts.hull_volume) && facts.hull_volume <= max_volume && facts.hull_volume >= min_volume) {
         form.volume = std::min(facts.hull_volume, form.box_volume);
         form.volume_level = AttributeLevel::model;
         form.volume_source = "convex hull, since the surface has no volume of its own";
@@ -52,9 +52,9 @@ Form form_of(const GeometryFacts& facts, Vec3 usual_size) {
     Form form;
     const Vec3 given = facts.size;
     const double largest = std::max({given.x, given.y, given.z});
-    form.size_known = is_finite(given) && largest > 0 && largest <= greatest_extent;
+    form.size_known = is_finite(given) && largest > 0 && largest <= max_extent;
     const Vec3 size = form.size_known ? given : usual_size;
-    form.size = max(size, Vec3{least_extent, least_extent, least_extent});
+    form.size = max(size, Vec3{min_extent, min_extent, min_extent});
     form.box_volume = form.size.x * form.size.y * form.size.z;
     form.face_area = std::max({form.size.x * form.size.y, form.size.y * form.size.z, form.size.z * form.size.x});
     choose_volume(facts, form);
@@ -106,7 +106,7 @@ ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static) {
     const bool is_primitive = validate("collision_shape", facts.fitted_shape).ok() &&
                               facts.fitted_shape != "convex_hull" && facts.fitted_shape != "trimesh" &&
                               facts.fitted_shape != "decomposition";
-    const double allowed = unseen_share * length(facts.size);
+    const double allowed = unseen_fraction * length(facts.size);
     if (is_primitive && facts.fitted_error >= 0 && facts.fitted_error <= allowed) {
         return {facts.fitted_shape, "fits the convex hull within " + short_number(facts.fitted_error * 1000) + " mm",
                 AttributeLevel::measured};

@@ -12,7 +12,7 @@ namespace embody::attributes {
 /// The part of a model's form that its mass depends on, made safe: every number is finite and positive, also for an
 /// empty or flat model.
 struct Form {
-    Vec3 size;                  ///< extents of the box, each at least `least_extent`, m
+    Vec3 size;                  ///< extents of the box, each at least `min_extent`, m
     bool size_known = false;    ///< from the model, not the category
     double box_volume = 0;      ///< m³
     double face_area = 0;       ///< of the box's largest face, m²
@@ -23,9 +23,9 @@ struct Form {
 };
 
 /// A box this thin in all directions still holds the smallest mass at the largest density. A model longer than
-/// `greatest_extent` counts as broken.
-inline constexpr double least_extent = 1e-3;
-inline constexpr double greatest_extent = 1e4;
+/// `max_extent` counts as broken.
+inline constexpr double min_extent = 1e-3;
+inline constexpr double max_extent = 1e4;
 
 /// `usual_size` stands in for a model without one.
 Form form_of(const GeometryFacts& facts, Vec3 usual_size);

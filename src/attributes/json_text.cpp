@@ -210,7 +210,7 @@ bool nests_too_deep(std::string_view text) {
         if (c == '"') quoted = true;
         if (c == '[' || c == '{') ++depth;
         if (c == ']' || c == '}') --depth;
-        if (depth > deepest_nesting) return true;
+        if (depth > max_nesting_depth) return true;
     }
     return false;
 }
@@ -222,7 +222,7 @@ Result<json> parse_json(const std::string& text, const std::string& where) {
                      "mend the text there, or save it again with the program that made it"};
     }
     if (nests_too_deep(text))
-        return Error{where, "lists and objects nest more than " + std::to_string(deepest_nesting) + " deep"};
+        return Error{where, "lists and objects nest more than " + std::to_string(max_nesting_depth) + " deep"};
     json parsed = json::parse(text, nullptr, false);
     if (parsed.is_discarded()) return fault_in(text, where);
     if (const auto repetition = RepetitionFinder(text).find()) {

@@ -11,7 +11,7 @@
 namespace embody::attributes {
 
 /// Levels of lists and objects that a JSON text may have; a real one needs less than ten.
-inline constexpr int deepest_nesting = 64;
+inline constexpr int max_nesting_depth = 64;
 
 /// Whether lists and objects of a JSON text nest deeper than that. Call it before the text is parsed: copying, printing
 /// and freeing a value of a million brackets would overflow the stack. The text need not be valid.

@@ -151,7 +151,7 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
     order_friction(set);
     update_collision_shape(set, facts.geometry, kind_before);
     complete_for_kind(set);
-    put_fineness(set, facts.geometry, form);
+    put_resolution(set, facts.geometry, form);
     return set;
 }
 

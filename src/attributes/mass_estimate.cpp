@@ -83,8 +83,8 @@ double difference_of_proportions(Vec3 form, Vec3 usual) {
     double mean = 0, square = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
         // form_of() never makes a side thinner than this.
-        const bool at_least = sides[i] <= least_extent;
-        const double ratio = std::log(sides[i] / (at_least ? std::max(others[i], least_extent) : others[i]));
+        const bool is_minimal = sides[i] <= min_extent;
+        const double ratio = std::log(sides[i] / (is_minimal ? std::max(others[i], min_extent) : others[i]));
         mean += ratio / 3;
         square += ratio * ratio / 3;
     }
@@ -120,13 +120,13 @@ Doubt doubt_about(const Classification& what, const Form& form) {
 // Mean of two independent answers weighted by their precision, as of errors of measurement: the category's mass with
 // its doubt, and the mass of any thing of this size.
 void draw_towards_any_thing(MassEstimate& estimate, Doubt& doubt, const CategoryData& any, const Form& form) {
-    const double share = doubt.variance / (doubt.variance + spread_of_any_thing * spread_of_any_thing);
+    const double weight = doubt.variance / (doubt.variance + spread_of_any_thing * spread_of_any_thing);
     const double mass_of_any = mass_of_box(any, form, AttributeLevel::standard).mass.typical;
-    const double factor = std::pow(mass_of_any / estimate.mass.typical, share);
+    const double factor = std::pow(mass_of_any / estimate.mass.typical, weight);
     for (double* mass : {&estimate.mass.low, &estimate.mass.typical, &estimate.mass.high}) *mass *= factor;
-    doubt.widening *= 1 - share;
+    doubt.widening *= 1 - weight;
     if (doubt.reasons.empty()) return;
-    estimate.source += "; drawn by " + short_number(100 * share) + " % to the " + short_number(mass_of_any) +
+    estimate.source += "; drawn by " + short_number(100 * weight) + " % to the " + short_number(mass_of_any) +
                        " kg of any thing of this size, since " + doubt.reasons;
 }
 

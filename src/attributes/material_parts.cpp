@@ -77,7 +77,7 @@ MassProperties spread(const MaterialPart& part, double factor) {
 }
 
 // "steel 60 %, glass 40 %" of the mass, the heaviest first; at most three.
-std::string shares_text(const std::vector<MaterialPart>& parts, double factor) {
+std::string fractions_text(const std::vector<MaterialPart>& parts, double factor) {
     std::vector<std::pair<const MaterialData*, double>> masses;
     const auto add = [&](const MaterialData* material, double volume) {
         const auto held = std::ranges::find(masses, material, &std::pair<const MaterialData*, double>::first);
@@ -151,10 +151,10 @@ Substance substance_of(const std::vector<MaterialPart>& parts, const MaterialCho
         add(part.material->density, amount.wall);
         if (part.core != nullptr) add(part.core->density, amount.core);
     }
-    const std::string shares = shares_text(parts, 1);
+    const std::string fractions = fractions_text(parts, 1);
     return {{mass.low / volume, mass.typical / volume, mass.high / volume},
-            shares,
-            shares + " of the mass by the names of its parts' materials, at usual walls",
+            fractions,
+            fractions + " of the mass by the names of its parts' materials, at usual walls",
             AttributeLevel::model};
 }
 
@@ -178,7 +178,7 @@ std::optional<CenterAndInertia> spread_over(const std::vector<MaterialPart>& par
         if (factor == thickest) walls += ": the most, and still too light, so all parts are made heavier alike";
     }
     return CenterAndInertia{whole.center, (mass / whole.volume) * whole.inertia,
-                            "spread over its parts (" + shares_text(parts, factor) + ")" + walls,
+                            "spread over its parts (" + fractions_text(parts, factor) + ")" + walls,
                             AttributeLevel::model};
 }
 

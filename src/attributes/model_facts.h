@@ -15,10 +15,10 @@ namespace embody::attributes {
 /// Standard of the attribute hull_error, m.
 inline constexpr double usual_hull_error = 0.01;
 /// Fraction of a thing's diagonal: a collision shape this far off the surface is not seen.
-inline constexpr double unseen_share = 0.02;
+inline constexpr double unseen_fraction = 0.02;
 /// A convex hull with hollows no deeper than this (m) may replace a thing of this size; below the usual error a
 /// decomposition would be no better.
-inline double negligible_concavity(Vec3 size) { return std::max(usual_hull_error, unseen_share * length(size)); }
+inline double negligible_concavity(Vec3 size) { return std::max(usual_hull_error, unseen_fraction * length(size)); }
 
 /// Surfaces of a model that share a material.
 struct PartFacts {

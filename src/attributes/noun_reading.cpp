@@ -19,7 +19,7 @@ using wordnet::NounTable;
 using wordnet::SynsetIndex;
 using wordnet::Topic;
 
-constexpr std::size_t longest_collocation = 5;
+constexpr std::size_t max_collocation_words = 5;
 constexpr std::size_t meanings_asked = 12;  // of a noun; the rarer meanings are hardly ever right
 constexpr std::size_t words_asked = 24;     // of the surroundings
 
@@ -29,7 +29,7 @@ double frequency(const NounSense& sense, std::size_t place) {
     return sense.tag_count + 1.0 / (1.0 + static_cast<double>(place));
 }
 
-double physical_share(const NounTable& nouns, LemmaIndex noun) {
+double physical_fraction(const NounTable& nouns, LemmaIndex noun) {
     double all = 0, physical = 0;
     const auto senses = nouns.senses(noun);
     for (std::size_t i = 0; i < senses.size(); ++i) {
@@ -138,10 +138,10 @@ std::optional<LemmaIndex> lemma_at(const NounTable& nouns, const std::vector<Tok
 std::vector<NounOccurrence> nouns_of(const Taxonomy::Data& data, const std::vector<Token>& tokens) {
     std::vector<NounOccurrence> found;
     for (std::size_t first = 0; first < tokens.size(); ++first) {
-        for (std::size_t length = 1; length <= longest_collocation && first + length <= tokens.size(); ++length) {
+        for (std::size_t length = 1; length <= max_collocation_words && first + length <= tokens.size(); ++length) {
             const auto lemma = lemma_at(*data.nouns, tokens, first, length);
             if (!lemma) continue;
-            const double physical = physical_share(*data.nouns, *lemma);
+            const double physical = physical_fraction(*data.nouns, *lemma);
             if (physical <= 0) continue;
             const bool is_material = data.material_phrases.contains(stems_of(joined(tokens, first, length, " ")));
             const bool is_plain = physical >= 0.5 && !is_material && !data.nouns->is_mostly_adjective(*lemma);
@@ -189,17 +189,17 @@ void Surroundings::add_words(const std::vector<Token>& tokens, const NounOccurre
 
 // Information content of the most specific common hypernym of the meaning and of another word. Higher where the meaning
 // is a kind of the other word's (a bat beside "animal"), unless that word says next to nothing ("object").
-std::optional<double> Surroundings::kinship(SynsetIndex meaning) const {
+std::optional<double> Surroundings::similarity(SynsetIndex meaning) const {
     if (above_words_.empty()) return std::nullopt;
     constexpr double of_that_kind = 0.75;
-    double most = 0;
+    double max_content = 0;
     for (const Above& above : all_above(*data_.nouns, meaning)) {
         if (!above_words_.contains(above.synset)) continue;
         const double content = content_of(*data_.nouns, above.synset);
         const bool says_kind = content > 0.2 && words_.contains(above.synset);
-        most = std::max(most, says_kind ? std::max(content, of_that_kind) : content);
+        max_content = std::max(max_content, says_kind ? std::max(content, of_that_kind) : content);
     }
-    return most;
+    return max_content;
 }
 
 // 1 within the usual size of the category; decreases with the factor by which the size is outside.
@@ -213,8 +213,8 @@ double Surroundings::size_fit(const CategoryData& category) const {
 
 double Surroundings::support(std::optional<SynsetIndex> meaning, const CategoryData& category) const {
     // A hypernym of nearly everything, such as artifact.n.01, says nothing.
-    const double kin = meaning ? kinship(*meaning).value_or(0) : 0;
-    const double related = std::exp(5 * std::max(kin - 0.25, 0.0));
+    const double common = meaning ? similarity(*meaning).value_or(0) : 0;
+    const double related = std::exp(5 * std::max(common - 0.25, 0.0));
     const double at_home = domains_.contains(category.domain) ? 1.6 : 1;
     return related * at_home * size_fit(category);
 }
@@ -251,7 +251,7 @@ std::vector<NounReading> readings_of(const Taxonomy::Data& data, LemmaIndex noun
             same->fit += reading.fit;
     }
     std::ranges::stable_sort(best, std::greater{}, &NounReading::fit);
-    for (NounReading& reading : best) reading.share = reading.fit / sum;
+    for (NounReading& reading : best) reading.probability = reading.fit / sum;
     return best;
 }
 
@@ -263,12 +263,12 @@ std::string path_text(const NounTable& nouns, const NounReading& reading) {
 
 double common_content(const NounTable& nouns, SynsetIndex a, SynsetIndex b) {
     const std::vector<Above> above_b = all_above(nouns, b);
-    double most = 0;
+    double max_content = 0;
     for (const Above& above : all_above(nouns, a)) {
         const bool shared = std::ranges::find(above_b, above.synset, &Above::synset) != above_b.end();
-        if (shared) most = std::max(most, content_of(nouns, above.synset));
+        if (shared) max_content = std::max(max_content, content_of(nouns, above.synset));
     }
-    return most;
+    return max_content;
 }
 
 bool is_kind_of(const NounTable& nouns, SynsetIndex meaning, SynsetIndex other) {

@@ -43,7 +43,7 @@ public:
     [[nodiscard]] bool tell() const { return !words_.empty() || !domains_.empty() || size_is_stated_; }
     /// Relatedness of the meaning to the closest meaning of another word, 0 (none) to 1 (the same); empty where no
     /// other word means a physical thing.
-    [[nodiscard]] std::optional<double> kinship(wordnet::SynsetIndex meaning) const;
+    [[nodiscard]] std::optional<double> similarity(wordnet::SynsetIndex meaning) const;
 
 private:
     void add_words(const std::vector<Token>& tokens, const NounOccurrence* without);
@@ -60,10 +60,10 @@ private:
 struct NounReading {
     std::size_t entry = 0;  ///< of Data::categories
     wordnet::SynsetIndex meaning = 0, anchor = 0;
-    std::size_t steps = 0;  ///< hypernyms from the meaning up to the anchor, which is the category's meaning
-    double share = 0;       ///< probability of this reading among all of the noun, 0 to 1
-    double prior = 0;       ///< fraction of the noun's uses that have this meaning, before other evidence
-    double fit = 0;         ///< weight of this reading with all evidence, not normalised
+    std::size_t steps = 0;   ///< hypernyms from the meaning up to the anchor, which is the category's meaning
+    double probability = 0;  ///< probability of this reading among all of the noun, 0 to 1
+    double prior = 0;        ///< fraction of the noun's uses that have this meaning, before other evidence
+    double fit = 0;          ///< weight of this reading with all evidence, not normalised
 };
 
 /// The likely readings, the likeliest first, and only the best of each category. Empty where no meaning leads to one.

@@ -27,16 +27,16 @@ std::string number_text(double value) {
 
 Error unknown_name(std::string_view name) {
     const AttributeDescription* nearest = nullptr;
-    std::size_t least = 0;
+    std::size_t min_distance = 0;
     for (const AttributeDescription& description : registry()) {
         const std::size_t distance = edit_distance(name.substr(0, 64), description.name);
-        if (nearest == nullptr || distance < least) {
+        if (nearest == nullptr || distance < min_distance) {
             nearest = &description;
-            least = distance;
+            min_distance = distance;
         }
     }
     // A name that is similar to none gets no guess.
-    const bool close = least <= std::max<std::size_t>(2, nearest->name.size() / 2);
+    const bool close = min_distance <= std::max<std::size_t>(2, nearest->name.size() / 2);
     return {std::string(name.substr(0, 64)), "there is no attribute of this name",
             close ? "did you mean \"" + nearest->name + "\"?" : ""};
 }

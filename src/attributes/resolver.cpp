@@ -76,8 +76,8 @@ void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& c
 void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& substance, const Form& form) {
     // The mass is clamped to the registry's range and to the density of the densest element.
     const AttributeDescription& range = *describe("mass");
-    const double most = std::min(*range.high, heaviest_density * form.volume);
-    const auto possible = [&](double mass) { return std::clamp(mass, std::min(*range.low, most), most); };
+    const double max_mass = std::min(*range.high, heaviest_density * form.volume);
+    const auto possible = [&](double mass) { return std::clamp(mass, std::min(*range.low, max_mass), max_mass); };
     const Interval mass{possible(estimate.mass.low), possible(estimate.mass.typical), possible(estimate.mass.high)};
     set.put({"mass", mass.typical, mass.low, mass.high, estimate.source, estimate.level});
     set.put({"volume", form.volume, {}, {}, form.volume_source, form.volume_level});
@@ -168,7 +168,7 @@ AttributeSet resolve_as(const Taxonomy::Data& data, const ModelFacts& facts, Cla
 
     // Defaults for the attributes that are still missing.
     complete_for_kind(set);
-    put_fineness(set, facts.geometry, form);
+    put_resolution(set, facts.geometry, form);
     return set;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_families = 255;
+constexpr std::size_t max_families = 255;
 
 std::pair<physics::SurfaceId, physics::SurfaceId> ordered(physics::SurfaceId a, physics::SurfaceId b) {
     return std::minmax(a, b);
@@ -65,7 +65,7 @@ Result<Surfaces> Surfaces::load(const std::filesystem::path& file, const std::ve
     const json* families = reader.list("families");
     const json* pairs = reader.list("pairs");
     if (!reader.finish()) return *reader.error();
-    if (families->size() > most_families) return Error{name + ": families", "are more than 255"};
+    if (families->size() > max_families) return Error{name + ": families", "are more than 255"};
 
     Surfaces surfaces;
     for (std::size_t i = 0; i < families->size(); ++i) {

@@ -80,7 +80,7 @@ void read_attributes(FieldReader& reader, CategoryData& category) {
 }
 
 // Whether things of the category have no form of their own, so that a model shows a container, a roll or one piece.
-bool is_stuff(const CategoryData& category) { return flows(category.kind) || is_thin(category.kind); }
+bool is_substance(const CategoryData& category) { return flows(category.kind) || is_thin(category.kind); }
 
 // The kind of the entry where it moves.
 void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind) {
@@ -141,7 +141,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     if (top) reader.list("subcategories");
     take_kind(reader, kind, category.kind);
     check_choice(reader, "placement", category.placement);
-    if (!category.modelled_as.empty() && !is_stuff(category)) {
+    if (!category.modelled_as.empty() && !is_substance(category)) {
         reader.refuse("modelled_as",
                       "is for the kinds fluid, granular, cloth and rope; this is " + to_text(category.kind));
     }
@@ -281,7 +281,7 @@ Result<void> find_model_entries(Taxonomy::Data& data) {
             return Error{where, "there is no entry \"" + substance.modelled_as + "\"",
                          "give the name of a category or subcategory"};
         }
-        if (is_stuff(*model)) {
+        if (is_substance(*model)) {
             return Error{where, "\"" + substance.modelled_as + "\" has no form of its own either",
                          "name what holds it, such as a bottle or a roll, or leave modelled_as out"};
         }

@@ -49,8 +49,8 @@ void take_word(TaxonomyEntry& entry, const TaxonomyEntry& owner, const std::stri
     for (TaxonomyEntry& inner : entry.subcategories) take_word(inner, owner, stems);
 }
 
-Result<void> give_words(std::vector<TaxonomyEntry>& entries, TaxonomyEntry& owner, const TaxonomyEntry& given,
-                        const std::string& file, UserWords& user_words) {
+Result<void> assign_words(std::vector<TaxonomyEntry>& entries, TaxonomyEntry& owner, const TaxonomyEntry& given,
+                          const std::string& file, UserWords& user_words) {
     if (!(*given.object).contains("words") || !(*given.object)["words"].is_array()) return {};
     for (const json& word : (*given.object)["words"]) {
         if (!word.is_string()) continue;
@@ -149,7 +149,7 @@ Result<void> lay_entry_over(std::vector<TaxonomyEntry>& entries, TaxonomyEntry g
         (parent != nullptr ? parent->subcategories : entries).push_back(std::move(added));
     }
     // The entry is searched again: adding may have moved the entries.
-    if (auto words = give_words(entries, *find(entries, name).entry, given, file, user_words); !words) return words;
+    if (auto words = assign_words(entries, *find(entries, name).entry, given, file, user_words); !words) return words;
     for (const TaxonomyEntry& one : inner) {
         TaxonomyEntry* owner = find(entries, name).entry;
         if (auto laid = lay_entry_over(entries, one, file, owner, user_words); !laid) return laid;

@@ -45,9 +45,9 @@ void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::
     material.surface = taxonomy.surfaces().surface_of(name);
     const MaterialData* usual = taxonomy.data().material(name);
     if (usual == nullptr || material.surface == 0) return;
-    const bool rubs_as_usual = material.friction_static == usual->friction_static.typical &&
-                               material.friction_dynamic == usual->friction_dynamic.typical;
-    if (!rubs_as_usual && material.friction_combine == physics::CombineRule::pair_table)
+    const bool has_usual_friction = material.friction_static == usual->friction_static.typical &&
+                                    material.friction_dynamic == usual->friction_dynamic.typical;
+    if (!has_usual_friction && material.friction_combine == physics::CombineRule::pair_table)
         material.friction_combine = physics::CombineRule::geometric_mean;
     const bool has_bounce = set.find("restitution") != nullptr;  // cloth, say, has none
     if (has_bounce && material.restitution != usual->restitution.typical &&
@@ -100,19 +100,19 @@ physics::ShapeDefinition primitive_shape(const std::string& shape, const Geometr
         facts.fitted_shape == shape && is_finite(facts.fitted_dimensions) && is_finite(facts.fitted_pose);
     const Vec3 size = safe_size(facts);
     const Transform pose = fitted ? facts.fitted_pose : box_pose(size);
-    const Vec3 d = max(facts.fitted_dimensions, Vec3{least_extent / 2, least_extent / 2, least_extent / 2});
+    const Vec3 d = max(facts.fitted_dimensions, Vec3{min_extent / 2, min_extent / 2, min_extent / 2});
     const double radius = fitted ? d.x : std::max(size.x, size.z) / 2;
     if (shape == "box") return placed(physics::BoxShape{fitted ? d : size * 0.5}, pose);
     if (shape == "sphere") return placed(physics::SphereShape{fitted ? d.x : std::max(radius, size.y / 2)}, pose);
     if (shape == "cylinder") return placed(physics::CylinderShape{radius, fitted ? d.y : size.y / 2}, pose);
-    const double half_height = fitted ? d.y : std::max(size.y / 2 - radius, least_extent / 2);
+    const double half_height = fitted ? d.y : std::max(size.y / 2 - radius, min_extent / 2);
     return placed(physics::CapsuleShape{radius, half_height}, pose);
 }
 
 // Points that span no volume (a sheet of paper, a road marking) make a thin box.
 Result<physics::ShapeDefinition> hull_shape(const GeometryFacts& facts, ModelGeometry& geometry) {
     const Vec3 s = facts.size;
-    if (is_finite(s) && std::min({s.x, s.y, s.z}) < least_extent) return primitive_shape("box", facts);
+    if (is_finite(s) && std::min({s.x, s.y, s.z}) < min_extent) return primitive_shape("box", facts);
     auto points = geometry.hull_points();
     if (!points) return points.error();
     if (points->size() < 4) return primitive_shape("box", facts);
@@ -221,7 +221,7 @@ physics::DeformableDefinition deformable_from_attributes(const AttributeSet& att
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
                                                                  const geometry::TetrahedralMesh& mesh,
                                                                  const Taxonomy* taxonomy) {
-    constexpr double least_poisson = -0.9, greatest_poisson = 0.495, least_yield = 1;
+    constexpr double min_poisson = -0.9, max_poisson = 0.495, min_yield = 1;
     const Result<double> density = spread(attributes, "density", geometry::volume(mesh), "m³", "soft thing");
     if (!density) return density.error();
     physics::DeformableDefinition deformable = deformable_from_attributes(attributes, taxonomy);
@@ -230,9 +230,9 @@ Result<physics::DeformableDefinition> soft_solid_from_attributes(const Attribute
     solid.tetrahedra = mesh.tetrahedra;
     solid.density = *density;
     solid.youngs_modulus = number_or_standard(attributes, "youngs_modulus");
-    solid.poisson_ratio = std::clamp(number_or_standard(attributes, "poisson_ratio"), least_poisson, greatest_poisson);
+    solid.poisson_ratio = std::clamp(number_or_standard(attributes, "poisson_ratio"), min_poisson, max_poisson);
     solid.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
-    solid.yield_stress = std::max(number_or_standard(attributes, "yield_stress"), least_yield);
+    solid.yield_stress = std::max(number_or_standard(attributes, "yield_stress"), min_yield);
     solid.internal_pressure = number_or_standard(attributes, "internal_pressure");
     deformable.matter = std::move(solid);
     return deformable;
@@ -263,7 +263,7 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
                                                            const std::vector<Vec3>& nodes, double diameter,
                                                            const Taxonomy* taxonomy) {
-    constexpr double least_diameter = 1e-4, greatest_diameter = 1, least_break = 1e-6;
+    constexpr double min_diameter = 1e-4, max_diameter = 1, min_break = 1e-6;
     double along = 0;
     for (std::size_t i = 1; i < nodes.size(); ++i) along += length(nodes[i] - nodes[i - 1]);
     const double slack = number_or_standard(attributes, "slack");
@@ -273,24 +273,24 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     physics::DeformableDefinition deformable = deformable_from_attributes(attributes, taxonomy);
     deformable.nodes = nodes;
     physics::Rope rope;
-    rope.diameter = std::clamp(diameter, least_diameter, greatest_diameter);
+    rope.diameter = std::clamp(diameter, min_diameter, max_diameter);
     rope.linear_density = *linear_density;
     rope.axial_stiffness = number_or_standard(attributes, "axial_stiffness");
     rope.bend_rigidity = number_or_standard(attributes, "bend_rigidity");
     rope.twist_rigidity = number_or_standard(attributes, "twist_rigidity");
     rope.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
-    rope.break_tension = std::max(number_or_standard(attributes, "break_tension"), least_break);
+    rope.break_tension = std::max(number_or_standard(attributes, "break_tension"), min_break);
     rope.slack = slack;
     deformable.matter = rope;
     return deformable;
 }
 
 physics::FluidDefinition fluid_from_attributes(const AttributeSet& attributes) {
-    constexpr double least_density = 1, most_viscosity = 1e4, most_yield_stress = 1e4;
+    constexpr double min_density = 1, max_viscosity = 1e4, max_yield_stress = 1e4;
     physics::FluidDefinition fluid;
-    fluid.density = std::max(number_or_standard(attributes, "rest_density"), least_density);
-    fluid.viscosity = std::min(number_or_standard(attributes, "dynamic_viscosity"), most_viscosity);
-    fluid.yield_stress = std::min(number_or_standard(attributes, "yield_stress_fluid"), most_yield_stress);
+    fluid.density = std::max(number_or_standard(attributes, "rest_density"), min_density);
+    fluid.viscosity = std::min(number_or_standard(attributes, "dynamic_viscosity"), max_viscosity);
+    fluid.yield_stress = std::min(number_or_standard(attributes, "yield_stress_fluid"), max_yield_stress);
     fluid.surface_tension = number_or_standard(attributes, "surface_tension");
     fluid.cell_size = number_or_standard(attributes, "fluid_cell_size");
     return fluid;

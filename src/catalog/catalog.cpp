@@ -517,7 +517,7 @@ Result<geometry::TriangleMesh> Catalog::mesh(std::int64_t id) const {
 
 Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double hull_error) const {
     database::DecompositionTable table(*state_->connection);
-    const double error = std::max(hull_error, geometry::least_hull_error);
+    const double error = std::max(hull_error, geometry::min_hull_error);
     const auto stored = table.find(id, max_hulls, micrometres(error));
     if (!stored) return stored.error();
     if (*stored) {

@@ -14,14 +14,14 @@
 namespace embody::catalog {
 namespace {
 
-constexpr int revision = 2;          // of make_soft_mesh(): a change makes all of them anew
-constexpr double least_share = 0.4;  // of the volume: with less it is mostly thin parts
-constexpr double least_piece = 0.5;  // of the mesh: with less there is no piece that the others hang on
-constexpr double weld_share = 1e-6;  // of the size, as the volume estimate welds
-constexpr std::size_t most_nodes = 100'000;
+constexpr int revision = 2;                  // of make_soft_mesh(): a change makes all of them anew
+constexpr double min_volume_fraction = 0.4;  // of the volume: with less it is mostly thin parts
+constexpr double min_piece_fraction = 0.5;   // of the mesh: with less there is no piece that the others hang on
+constexpr double weld_fraction = 1e-6;       // of the size, as the volume estimate welds
+constexpr std::size_t max_nodes = 100'000;
 // A count more than this many times the wanted one is not by chance: the body is flat.
-constexpr double most_surplus = 1.3;
-constexpr double greatest_flatness = 8;
+constexpr double max_surplus = 1.3;
+constexpr double max_flatness = 8;
 
 // Two of the lattice's cubes across the thickness, with 12 tetrahedra each. Thickness is the smallest extent, or for
 // hollow or branched bodies that of a plate of as much surface, and half of it more for edges: 3 V/A (ball: half its
@@ -30,16 +30,16 @@ int wanted_tetrahedra(double volume, double area, Vec3 size) {
     const double thickness = std::min(std::min({size.x, size.y, size.z}), 3 * volume / area);
     const double cell = thickness / 2;
     const double count = 12 * volume / (cell * cell * cell);
-    if (!(count < most_soft_tetrahedra)) return most_soft_tetrahedra;
-    return std::max(fewest_soft_tetrahedra, static_cast<int>(count));
+    if (!(count < max_soft_tetrahedra)) return max_soft_tetrahedra;
+    return std::max(min_soft_tetrahedra, static_cast<int>(count));
 }
 
 Error cannot_be_soft(std::string why, std::string remedy) { return {"soft mesh", std::move(why), std::move(remedy)}; }
 
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+std::string percent(double fraction) { return std::to_string(std::lround(100 * fraction)) + " %"; }
 
 bool has_too_many(const geometry::TetrahedralMesh& mesh) {
-    return static_cast<double>(mesh.tetrahedra.size()) > most_surplus * most_soft_tetrahedra;
+    return static_cast<double>(mesh.tetrahedra.size()) > max_surplus * max_soft_tetrahedra;
 }
 
 // Across the thinnest extent, by a factor.
@@ -70,7 +70,7 @@ Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, Vec3 si
     Filled filled{std::move(*filling), 1};
     while (has_too_many(filled.filling.mesh)) {
         const double flatness = 2 * filled.flatness;
-        if (flatness > greatest_flatness)
+        if (flatness > max_flatness)
             return Error{"surface", "is too flat: even with cells 8 times as wide as thick it takes " +
                                         std::to_string(filled.filling.mesh.tetrahedra.size()) + " tetrahedra"};
         geometry::TriangleMesh thicker = welded;
@@ -89,7 +89,7 @@ Result<std::size_t> keep_largest(geometry::TetrahedralMesh& mesh) {
     double whole = 0;
     for (const double volume : pieces.volumes) whole += volume;
     const std::size_t count = pieces.volumes.size();
-    if (pieces.volumes.front() < least_piece * whole)
+    if (pieces.volumes.front() < min_piece_fraction * whole)
         return cannot_be_soft("it has " + std::to_string(count) + " pieces that do not hang together",
                               "import them as models of their own");
     geometry::keep_components(mesh, pieces, 1);
@@ -108,18 +108,18 @@ void to_single_precision(std::vector<Vec3>& nodes) {
 
 Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface) {
     const Vec3 size = geometry::bounds(surface).size();
-    const geometry::TriangleMesh welded = geometry::weld(surface, weld_share * std::max({size.x, size.y, size.z}));
+    const geometry::TriangleMesh welded = geometry::weld(surface, weld_fraction * std::max({size.x, size.y, size.z}));
     const geometry::VolumeEstimate estimate = geometry::estimate_volume(welded);
     if (estimate.method == geometry::VolumeMethod::no_volume)
         return cannot_be_soft("its surface encloses nothing", "make it rigid, or cloth if it is a sheet");
     auto made = fill(welded, estimate.solid.volume, size);
     if (!made) return cannot_be_soft("its surface " + made.error().why, "make it rigid, or cloth if it is a sheet");
     geometry::TetrahedralFilling* filled = &made->filling;
-    if (filled->volume_share < least_share)
+    if (filled->volume_fraction < min_volume_fraction)
         return cannot_be_soft("it is too thin: " + std::to_string(filled->mesh.tetrahedra.size()) +
-                                  " tetrahedra fill only " + percent(filled->volume_share) + " of its volume",
+                                  " tetrahedra fill only " + percent(filled->volume_fraction) + " of its volume",
                               "make it rigid, or cloth if it is a sheet");
-    SoftMesh soft{std::move(filled->mesh), filled->cell, made->flatness, filled->volume_share,
+    SoftMesh soft{std::move(filled->mesh), filled->cell, made->flatness, filled->volume_fraction,
                   filled->left_out_components};
     const auto left_out = keep_largest(soft.mesh);
     if (!left_out) return left_out.error();
@@ -139,7 +139,7 @@ database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh) {
     ByteWriter out;
     out.number(mesh->cell);
     out.number(mesh->flatness);
-    out.number(mesh->volume_share);
+    out.number(mesh->volume_fraction);
     out.number(static_cast<std::uint64_t>(mesh->left_out));
     out.number(static_cast<std::uint64_t>(mesh->mesh.nodes.size()));
     for (const Vec3 node : mesh->mesh.nodes) {
@@ -165,14 +165,14 @@ Result<SoftMesh> soft_mesh_from(const database::StoredSimulationMesh& stored) {
     SoftMesh soft;
     soft.cell = in.number<double>();
     soft.flatness = in.number<double>();
-    soft.volume_share = in.number<double>();
+    soft.volume_fraction = in.number<double>();
     soft.left_out = static_cast<std::size_t>(in.number<std::uint64_t>());
-    soft.mesh.nodes.resize(in.count(most_nodes, 3 * sizeof(float)));
+    soft.mesh.nodes.resize(in.count(max_nodes, 3 * sizeof(float)));
     for (Vec3& node : soft.mesh.nodes) {
         for (int i = 0; i < 3; ++i) node[i] = in.number<float>();
         if (!is_finite(node)) in.fail();
     }
-    soft.mesh.tetrahedra.resize(in.count(8 * most_nodes, 4 * sizeof(std::uint32_t)));
+    soft.mesh.tetrahedra.resize(in.count(8 * max_nodes, 4 * sizeof(std::uint32_t)));
     for (geometry::Tetrahedron& t : soft.mesh.tetrahedra) {
         for (std::uint32_t& node : t) node = in.number<std::uint32_t>();
         const bool is_inside = std::ranges::all_of(t, [&](std::uint32_t n) { return n < soft.mesh.nodes.size(); });

@@ -13,11 +13,11 @@ struct SoftMesh {
     geometry::TetrahedralMesh mesh;  ///< in the thing's frame; nodes have single precision, as stored ones have
     double cell = 0;                 ///< m, side of the cubes of the lattice that it is cut from
     double flatness = 1;             ///< how many times as wide as thick the cells are where cubes would be too many
-    double volume_share = 0;         ///< fraction of the enclosed volume: the rest is thinner than a cell
+    double volume_fraction = 0;      ///< fraction of the enclosed volume: the rest is thinner than a cell
     std::size_t left_out = 0;        ///< pieces of the body that are not connected to it and move with it
 };
 
-inline constexpr int fewest_soft_tetrahedra = 300, most_soft_tetrahedra = 2000;
+inline constexpr int min_soft_tetrahedra = 300, max_soft_tetrahedra = 2000;
 
 /// Fills what the surface encloses, two cells across its thickness where 300 to 2,000 tetrahedra allow it
 /// (docs/import.md: Soft things); what is so flat that cubes would be too many is cut from flat cells, up to 8 times as

@@ -53,7 +53,7 @@ nlohmann::json to_json(const Row& row) {
             {"cell_m", row.filling.cell},
             {"components", row.filling.component_volumes.size()},
             {"left_out_components", row.filling.left_out_components},
-            {"volume_share", row.filling.volume_share},
+            {"volume_share", row.filling.volume_fraction},
             {"volume_method", geometry::name(row.filling.method)},
             {"least_angle_deg", row.angles.least},
             {"largest_angle_deg", row.angles.largest},
@@ -66,7 +66,7 @@ void print_row(const Row& row) {
     print_text("{} {:>9} {:>6} {:>5} {:>6.1f} {:>3} {:>3} {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f} {:>7.3f} {:>7.3f}  {}\n",
                padded(row.model.name, 24), row.model.triangles, row.filling.mesh.tetrahedra.size(),
                row.filling.mesh.nodes.size(), 1e3 * row.filling.cell, row.filling.component_volumes.size(),
-               row.filling.left_out_components, 100 * row.filling.volume_share, row.angles.least, row.angles.largest,
+               row.filling.left_out_components, 100 * row.filling.volume_fraction, row.angles.least, row.angles.largest,
                row.least_weight, row.fill_seconds, row.embed_seconds, geometry::name(row.filling.method));
     std::fflush(stdout);
 }
@@ -97,7 +97,7 @@ int run_tetrahedra(const BenchArguments& arguments) {
             if (!arguments.json) print_text("{} {}\n", padded(model.name, 24), row.error().message());
             continue;
         }
-        shares.push_back(row->filling.volume_share);
+        shares.push_back(row->filling.volume_fraction);
         seconds.push_back(row->fill_seconds);
         rows.push_back(to_json(*row));
         if (!arguments.json) print_row(*row);

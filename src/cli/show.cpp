@@ -73,7 +73,7 @@ void print_soft_mesh(const Result<catalog::SoftMesh>& soft) {
         return;
     }
     print_text("  soft      as {} tetrahedra of cells of {:.1f} mm, which hold {:.0f} % of its volume\n",
-               soft->mesh.tetrahedra.size(), 1e3 * soft->cell, 100 * soft->volume_share);
+               soft->mesh.tetrahedra.size(), 1e3 * soft->cell, 100 * soft->volume_fraction);
 }
 
 nlohmann::json soft_mesh_json(const std::optional<Result<catalog::SoftMesh>>& soft) {
@@ -82,7 +82,7 @@ nlohmann::json soft_mesh_json(const std::optional<Result<catalog::SoftMesh>>& so
     return {{"tetrahedra", (*soft)->mesh.tetrahedra.size()},
             {"nodes", (*soft)->mesh.nodes.size()},
             {"cell", (*soft)->cell},
-            {"volume_share", (*soft)->volume_share},
+            {"volume_share", (*soft)->volume_fraction},
             {"left_out", (*soft)->left_out}};
 }
 

@@ -219,7 +219,7 @@ Result<Statement> Connection::prepare(std::string_view command) {
     return Statement(*this, std::string(command), compiled);
 }
 
-void Connection::give_back(std::string command, void* compiled) {
+void Connection::recycle(std::string command, void* compiled) {
     auto* statement = static_cast<sqlite3_stmt*>(compiled);
     sqlite3_reset(statement);
     sqlite3_clear_bindings(statement);

@@ -61,7 +61,7 @@ private:
     Result<void> set_mark(std::uint32_t application_id);
     Result<void> configure(const ConnectionOptions& options);
     Result<void> switch_to_write_ahead_log(int wait_milliseconds);
-    void give_back(std::string command, void* compiled);
+    void recycle(std::string command, void* compiled);
 
     std::filesystem::path file_;
     std::unique_ptr<Handles> handles_;

@@ -49,7 +49,7 @@ ModelRow read_row(const Statement& statement) {
 
 // Above this many matches the order is by name instead of BM25, which would read the lengths of all that match (2 µs
 // each).
-constexpr std::size_t most_to_rank = 1500;
+constexpr std::size_t max_ranked = 1500;
 
 // How well a name matches the words, best first; models that match only by tags and the like come last.
 enum NameFit : std::uint8_t { is_the_words, has_the_words, has_their_beginnings, elsewhere };
@@ -105,7 +105,7 @@ Result<ModelMatches> ModelTable::search(const ModelSearch& search) {
     // All matches, by the index alone, and of these those of the category.
     auto ids = ids_that_match(expressions.anywhere);
     if (!ids) return ids.error();
-    const bool broad = ids->size() > most_to_rank;
+    const bool broad = ids->size() > max_ranked;
     if (!search.category.empty()) {
         auto narrowed = ids_in_category(*ids, search.category);
         if (!narrowed) return narrowed.error();

@@ -8,8 +8,8 @@
 namespace embody::database {
 namespace {
 
-constexpr std::size_t most_words = 16;
-constexpr std::size_t most_bytes = 64;
+constexpr std::size_t max_words = 16;
+constexpr std::size_t max_word_bytes = 64;
 
 struct CodePoint {
     std::uint32_t value = 0;  ///< 0 where the bytes are not UTF-8
@@ -50,16 +50,16 @@ std::vector<std::string> split_words(std::string_view typed) {
         if (!word.empty() && std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
         word.clear();
     };
-    while (!typed.empty() && words.size() < most_words) {
+    while (!typed.empty() && words.size() < max_words) {
         const CodePoint c = read_code_point(typed);
         if (!is_part_of_word(c.value)) {
             end_word();
-        } else if (word.size() + c.bytes <= most_bytes) {
+        } else if (word.size() + c.bytes <= max_word_bytes) {
             word += typed.substr(0, c.bytes);
         }
         typed.remove_prefix(c.bytes);
     }
-    if (words.size() < most_words) end_word();
+    if (words.size() < max_words) end_word();
     return words;
 }
 

@@ -20,7 +20,7 @@ Statement::Statement(Statement&& other) noexcept
       bind_error_(std::move(other.bind_error_)) {}
 
 Statement::~Statement() {
-    if (compiled_) connection_->give_back(std::move(command_), compiled_);
+    if (compiled_) connection_->recycle(std::move(command_), compiled_);
 }
 
 void Statement::note(int code) {

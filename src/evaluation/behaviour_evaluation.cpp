@@ -106,11 +106,11 @@ std::optional<Compared> slide_of(const Stage& stage, double extent, double frict
         if (rocks(stage, extent)) return std::nullopt;
     }
     if (length(stage.world().linear_velocity(stage.body)) > 0.01) return std::nullopt;
-    const Vec3 way = stage.center() - start;
+    const Vec3 displacement = stage.center() - start;
     const double drag_area = attributes.number("drag_coefficient", 1) * attributes.number("drag_area", 0);
     const double k = stage.world().settings().air_density * drag_area / (2 * attributes.number("mass", 1));
     const double energy = push_speed * push_speed / (2 * friction * gravity);
-    return Compared{k > 0 ? std::log1p(2 * k * energy) / (2 * k) : energy, std::hypot(way.x, way.z)};
+    return Compared{k > 0 ? std::log1p(2 * k * energy) / (2 * k) : energy, std::hypot(displacement.x, displacement.z)};
 }
 
 // Restitution from the height of the rebound: `ground` is the height of its centre at rest.

@@ -13,7 +13,7 @@ namespace {
 using attributes::AttributeSet;
 using attributes::ModelFacts;
 
-double share(std::size_t part, std::size_t whole) {
+double fraction(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
@@ -47,9 +47,9 @@ void evaluate_model(const attributes::Taxonomy& taxonomy, const ModelFacts& fact
 
 }  // namespace
 
-double CatalogueEvaluation::above_default() const { return share(models - unknown.size(), models); }
+double CatalogueEvaluation::above_default() const { return fraction(models - unknown.size(), models); }
 
-double CatalogueEvaluation::movable_agreement() const { return share(flagged - disagreements.size(), flagged); }
+double CatalogueEvaluation::movable_agreement() const { return fraction(flagged - disagreements.size(), flagged); }
 
 double CatalogueEvaluation::median_density_sum() const {
     return density_sums.empty() ? 0 : density_sums[density_sums.size() / 2];
@@ -57,7 +57,7 @@ double CatalogueEvaluation::median_density_sum() const {
 
 double CatalogueEvaluation::density_sums_within_factor_2() const {
     const auto within = [](double ratio) { return ratio >= 0.5 && ratio <= 2; };
-    return share(static_cast<std::size_t>(std::ranges::count_if(density_sums, within)), density_sums.size());
+    return fraction(static_cast<std::size_t>(std::ranges::count_if(density_sums, within)), density_sums.size());
 }
 
 Result<CatalogueEvaluation> evaluate_catalogue(const attributes::Taxonomy& taxonomy, const catalog::Catalog& catalog) {

@@ -12,7 +12,7 @@
 namespace embody::evaluation {
 namespace {
 
-using Reader = io::CSVReader<most_columns, io::trim_chars<' ', '\t'>, io::double_quote_escape<',', '"'>>;
+using Reader = io::CSVReader<max_columns, io::trim_chars<' ', '\t'>, io::double_quote_escape<',', '"'>>;
 
 template <std::size_t... I>
 void read_header(Reader& reader, const ColumnNames& names, std::index_sequence<I...>) {
@@ -30,7 +30,7 @@ bool read_row(Reader& reader, TableRow& row, std::index_sequence<I...>) {
 
 Result<void> read_table(const std::filesystem::path& file, const ColumnNames& names, std::size_t required_columns,
                         const std::function<Result<void>(const TableRow&)>& take) {
-    constexpr auto columns = std::make_index_sequence<most_columns>();
+    constexpr auto columns = std::make_index_sequence<max_columns>();
     if (!std::filesystem::is_regular_file(file)) return Error{file.string(), "is not a file", "name a CSV file"};
     try {
         Reader reader(file.string());

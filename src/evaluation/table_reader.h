@@ -12,14 +12,14 @@
 namespace embody::evaluation {
 
 /// Maximum number of columns that a reader asks for.
-inline constexpr std::size_t most_columns = 10;
+inline constexpr std::size_t max_columns = 10;
 
 /// Columns of a table to read, in the order in which a row's cells are handed over; unused names are empty.
-using ColumnNames = std::array<std::string, most_columns>;
+using ColumnNames = std::array<std::string, max_columns>;
 
 /// One row: the cells of the named columns, empty where the table has no such column, and the line it stands in.
 struct TableRow {
-    std::array<std::string, most_columns> cells;
+    std::array<std::string, max_columns> cells;
     unsigned line = 0;
 };
 

@@ -10,16 +10,16 @@ namespace embody::interchange {
 /// all.
 /// At most 200 characters, ASCII.
 inline std::string one_line(std::string_view text) {
-    constexpr std::size_t longest = 200;
+    constexpr std::size_t max_length = 200;
     std::string line;
-    for (const char c : text.substr(0, longest)) {
+    for (const char c : text.substr(0, max_length)) {
         if (c > ' ' && c <= '~') {
             line += c;
         } else if (!line.empty() && line.back() != ' ') {
             line += ' ';
         }
     }
-    return text.size() > longest ? line + " ..." : line;
+    return text.size() > max_length ? line + " ..." : line;
 }
 
 }  // namespace embody::interchange

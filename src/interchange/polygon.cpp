@@ -9,7 +9,7 @@ namespace embody::interchange {
 namespace {
 
 // Ear clipping takes a time that grows with the square of the number of corners and, for odd shapes, with its cube.
-constexpr std::size_t most_corners = 1000;
+constexpr std::size_t max_corners = 1000;
 
 /// Newell's normal: twice the area, whatever the corners' order and flatness.
 Vec3 normal_of(std::span<const Vec3f> corners) {
@@ -25,7 +25,7 @@ Vec3 normal_of(std::span<const Vec3f> corners) {
 std::vector<std::array<std::uint32_t, 3>> triangles_of_polygon(std::span<const Vec3f> corners) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     if (corners.size() < 3) return triangles;
-    if (corners.size() > most_corners) {
+    if (corners.size() > max_corners) {
         for (std::uint32_t i = 1; i + 1 < corners.size(); ++i) triangles.push_back({0, i, i + 1});
         return triangles;
     }

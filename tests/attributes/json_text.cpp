@@ -16,7 +16,7 @@ std::string message_of(const std::string& text) {
 }
 
 TEST(JsonText, NestingIsCountedOutsideOfTextsOnly) {
-    const std::size_t most = deepest_nesting;
+    const std::size_t most = max_nesting_depth;
     EXPECT_TRUE(nests_too_deep(std::string(most + 1, '[')));
     EXPECT_TRUE(nests_too_deep(R"("\"")" + std::string(most + 1, '{')));
     EXPECT_FALSE(nests_too_deep(std::string(most, '[') + std::string(most, ']')));

@@ -208,7 +208,7 @@ Result<database::ImportSource> Importer::read_source(const FoundModel& model, co
 
 Result<std::optional<std::uint64_t>> Importer::hash_content(const FoundModel& model, const ImportOptions& options) {
     const std::uint64_t limit =
-        model.item.archive.empty() ? interchange::Archive::default_limit : interchange::Archive::largest_file;
+        model.item.archive.empty() ? interchange::Archive::default_limit : interchange::Archive::max_file_bytes;
     return hash_file(model.file, limit, [&](std::uint64_t done, std::uint64_t total) {
         // Small files are read at once; for large ones a person sees the progress.
         const std::uint64_t percent = total == 0 ? 100 : 100 * done / total;
@@ -363,8 +363,8 @@ bool Importer::needs_other_unit(const Planned& planned, const PreparedModel& pre
 }
 
 void Importer::name_in_report(const std::string& key) {
-    constexpr std::size_t most = 1000;
-    if (report_.keys.size() < most) report_.keys.push_back(key);
+    constexpr std::size_t max_keys = 1000;
+    if (report_.keys.size() < max_keys) report_.keys.push_back(key);
 }
 
 Result<void> Importer::take(const Planned& planned, Result<PreparedModel> prepared) {

@@ -22,11 +22,11 @@ namespace {
 using Clock = WorkerProcess::Clock;
 
 constexpr auto start_time = std::chrono::minutes(2);  // for a worker to load, confine itself and say so
-constexpr int most_starts_in_vain = 3;
+constexpr int max_failed_starts = 3;
 // Then a fresh worker takes over, so that leaks of libraries do not add up, and long before its own limit
 // (ConfinementOptions::processor_seconds) ends it amid a model.
 constexpr int models_a_worker = 256;
-constexpr double most_processor_seconds = 1800;
+constexpr double max_processor_seconds = 1800;
 
 std::filesystem::path worker_beside_this_program() {
     std::error_code problem;
@@ -36,13 +36,13 @@ std::filesystem::path worker_beside_this_program() {
 /// What the workers need to read: archives, and the folders of plain files. One folder that holds all of them where
 /// they are too many for a program's arguments.
 std::vector<std::string> places_of(const std::vector<ImportItem>& items) {
-    constexpr std::size_t most_places = 256;
+    constexpr std::size_t max_places = 256;
     std::set<std::string> places;
     for (const ImportItem& item : items) {
         const std::filesystem::path folder = std::filesystem::path(item.path).parent_path();
         places.insert(!item.archive.empty() ? item.archive : folder.empty() ? "." : folder.string());
     }
-    if (places.size() <= most_places) return {places.begin(), places.end()};
+    if (places.size() <= max_places) return {places.begin(), places.end()};
     std::filesystem::path shared = *places.begin();
     for (const std::filesystem::path place : places) {
         const auto [end, other] = std::mismatch(shared.begin(), shared.end(), place.begin(), place.end());
@@ -76,15 +76,15 @@ public:
         if (options_.worker_program.empty()) options_.worker_program = worker_beside_this_program();
         const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
         const std::size_t wanted = options_.workers > 0 ? static_cast<std::size_t>(options_.workers) : cores;
-        shares_ = share_memory(options_.bytes > 0 ? options_.bytes : default_memory_budget(), wanted);
+        memory_ = divide_memory(options_.bytes > 0 ? options_.bytes : default_memory_budget(), wanted);
     }
 
     Result<void> run() {
         readable_ = places_of(items_);
         queue_.resize(items_.size());
         std::iota(queue_.begin(), queue_.end(), std::size_t{0});
-        places_.resize(std::min(shares_.workers, items_.size()));
-        bytes_per_worker_ = shares_.each;
+        places_.resize(std::min(memory_.workers, items_.size()));
+        bytes_per_worker_ = memory_.each;
         if (auto ran = run_queue(); !ran) return ran;
 
         // Once more, alone, with all of the memory, and each by a worker of its own: one that lives on after a hostile
@@ -95,7 +95,7 @@ public:
         starts_in_vain_ = 0;
         places_.clear();
         places_.resize(std::min<std::size_t>(1, queue_.size()));
-        bytes_per_worker_ = shares_.alone;
+        bytes_per_worker_ = memory_.alone;
         return run_queue();
     }
 
@@ -115,9 +115,9 @@ private:
             for (Place& place : places_) {
                 if (place.worker == nullptr && next_ < queue_.size()) start(place);
             }
-            if (starts_in_vain_ >= most_starts_in_vain && !any_was_ready_) return start_error_;
+            if (starts_in_vain_ >= max_failed_starts && !any_was_ready_) return start_error_;
             // Workers that could start once and no longer can: what is left fails, by name.
-            if (starts_in_vain_ >= most_starts_in_vain && !is_busy()) {
+            if (starts_in_vain_ >= max_failed_starts && !is_busy()) {
                 finish_item(queue_[next_++], start_error_);
                 continue;
             }
@@ -195,7 +195,7 @@ private:
         if ((*message)->kind == FrameKind::ready && !place.ready) {
             place.ready = any_was_ready_ = true;
             starts_in_vain_ = 0;
-            give_next(place);
+            assign_next(place);
         } else if (place.has_item &&
                    ((*message)->kind == FrameKind::prepared || (*message)->kind == FrameKind::failed ||
                     (*message)->kind == FrameKind::out_of_memory)) {
@@ -221,17 +221,17 @@ private:
         place.has_item = false;
         ++place.served;
         // Work for the worker first, so that it is busy while `done` stores the model.
-        const bool larger_share = message.kind == FrameKind::out_of_memory && shares_.alone > bytes_per_worker_;
+        const bool gets_more_memory = message.kind == FrameKind::out_of_memory && memory_.alone > bytes_per_worker_;
         const bool is_used_up = is_last_round_ || place.served >= models_a_worker;
-        if (is_used_up || place.worker->processor_seconds() > most_processor_seconds) {
+        if (is_used_up || place.worker->processor_seconds() > max_processor_seconds) {
             place.worker.reset();
         } else {
-            give_next(place);
+            assign_next(place);
         }
-        finish_item(answered, std::move(result), larger_share ? Again::yes : Again::no);
+        finish_item(answered, std::move(result), gets_more_memory ? Again::yes : Again::no);
     }
 
-    void give_next(Place& place) {
+    void assign_next(Place& place) {
         while (next_ < queue_.size()) {
             const std::size_t number = queue_[next_++];
             std::vector<std::uint8_t> payload = to_bytes(items_[number]);
@@ -277,7 +277,7 @@ private:
     const std::vector<ImportItem>& items_;
     ConfinedPoolOptions options_;
     const Done& done_;
-    MemoryShares shares_;
+    WorkerMemory memory_;
     std::size_t bytes_per_worker_ = 0;
     std::vector<std::string> readable_;  // by the workers
     std::vector<Place> places_;
@@ -292,8 +292,8 @@ private:
 
 Result<void> prepare_confined(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options,
                               const std::function<bool(std::size_t item, Result<PreparedModel> prepared)>& done) {
-    const auto is_in_range = [](double seconds, double most) { return seconds > 0 && seconds <= most; };
-    if (!is_in_range(options.processor_seconds_per_model, most_processor_seconds)) {
+    const auto is_in_range = [](double seconds, double max_seconds) { return seconds > 0 && seconds <= max_seconds; };
+    if (!is_in_range(options.processor_seconds_per_model, max_processor_seconds)) {
         return Error{"processor_seconds_per_model", "must be greater than 0 s and at most 1800 s"};
     }
     if (!is_in_range(options.wall_seconds_per_model, 1e6)) {

@@ -28,7 +28,7 @@ Result<ConvexParts> make_convex_parts(const geometry::TriangleMesh& mesh, int ma
     parameters.max_hulls = max_hulls;
     parameters.hull_error = hull_error;
     parameters.keep_below = keep_below;
-    parameters.max_vertices = static_cast<int>(most_part_vertices);
+    parameters.max_vertices = static_cast<int>(max_part_vertices);
     const auto made = geometry::decompose(mesh, parameters);
     if (!made) return made.error();
     ConvexParts parts{max_hulls, hull_error, made->concavity, made->hull_concavity, {}};
@@ -55,12 +55,12 @@ Result<std::vector<std::vector<Vec3f>>> unpack_hulls(std::span<const std::uint8_
     const Error damaged{"convex parts", "are damaged", "import the model again"};
     if (bytes.size() < 4) return damaged;
     const std::uint32_t count = take(bytes);
-    if (count > geometry::most_decomposition_hulls) return damaged;
+    if (count > geometry::max_decomposition_hulls) return damaged;
     std::vector<std::vector<Vec3f>> hulls(count);
     for (std::vector<Vec3f>& hull : hulls) {
         if (bytes.size() < 4) return damaged;
         const std::uint32_t vertices = take(bytes);
-        if (vertices > most_part_vertices || bytes.size() < 12 * std::size_t{vertices}) return damaged;
+        if (vertices > max_part_vertices || bytes.size() < 12 * std::size_t{vertices}) return damaged;
         hull.resize(vertices);
         for (Vec3f& p : hull) {
             for (float* number : {&p.x, &p.y, &p.z}) {

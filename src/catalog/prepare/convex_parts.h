@@ -19,7 +19,7 @@ struct ConvexParts {
     std::vector<std::vector<Vec3f>> hulls;  ///< vertices of each, largest hull first, model frame
 };
 
-inline constexpr std::size_t most_part_vertices = 64;  ///< of one hull of a decomposition
+inline constexpr std::size_t max_part_vertices = 64;  ///< of one hull of a decomposition
 
 /// Decomposes; the hull of all is left whole where its concavity is at most `keep_below` (m). Errors as of
 /// geometry::decompose.

@@ -14,9 +14,9 @@
 namespace embody::catalog {
 namespace {
 
-constexpr double weld_share = 1e-6;       // of the largest extent, as the volume estimate welds
-constexpr double least_thickness = 1e-3;  // m, of a flat model's box
-constexpr int most_hull_points = 256;
+constexpr double weld_fraction = 1e-6;  // of the largest extent, as the volume estimate welds
+constexpr double min_thickness = 1e-3;  // m, of a flat model's box
+constexpr int max_hull_points = 256;
 constexpr int volume_cells = 16384;  // half of the usual: the grid is two thirds of an import's time
 
 std::string words_for(geometry::VolumeMethod method) {
@@ -35,7 +35,7 @@ std::string words_for(geometry::VolumeMethod method) {
 
 /// The corners of the bounds, thickened where they are flat.
 void add_box_as_hull(const Bounds& bounds, GeometryMeasurement& measured) {
-    const Vec3 half = max(bounds.half_extents(), Vec3{1, 1, 1} * (least_thickness / 2));
+    const Vec3 half = max(bounds.half_extents(), Vec3{1, 1, 1} * (min_thickness / 2));
     const Vec3 c = bounds.center();
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 signs{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
@@ -72,7 +72,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompo
     const geometry::TriangleMesh raw = joined(scene, [](const interchange::RawMesh&) { return true; });
     const Bounds bounds = geometry::bounds(raw);
     const Vec3 size = bounds.size();
-    const geometry::TriangleMesh mesh = geometry::weld(raw, weld_share * std::max({size.x, size.y, size.z}));
+    const geometry::TriangleMesh mesh = geometry::weld(raw, weld_fraction * std::max({size.x, size.y, size.z}));
 
     GeometryMeasurement measured;
     measured.triangles = raw.triangles.size();
@@ -96,7 +96,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompo
 
     // Hull, or a box where the model is flat.
     facts.fitted_shape = "convex_hull";
-    const auto hull = geometry::build_convex_hull(mesh, most_hull_points);
+    const auto hull = geometry::build_convex_hull(mesh, max_hull_points);
     if (!hull) {
         add_box_as_hull(bounds, measured);
     } else {

@@ -11,7 +11,7 @@ std::size_t default_memory_budget();
 
 /// How the workers of one import divide its memory: several at a time for most models, one at a time, with all of it,
 /// for those that need more.
-struct MemoryShares {
+struct WorkerMemory {
     std::size_t workers = 1;  ///< at a time
     std::size_t each = 0;     ///< address space of each of them, bytes
     std::size_t alone = 0;    ///< address space of one that works alone, bytes
@@ -19,6 +19,6 @@ struct MemoryShares {
 
 /// `budget`: bytes for all; `wanted`: workers, at least 1. Fewer workers where each would have too little to read
 /// ordinary models.
-MemoryShares share_memory(std::size_t budget, std::size_t wanted);
+WorkerMemory divide_memory(std::size_t budget, std::size_t wanted);
 
 }  // namespace embody::catalog

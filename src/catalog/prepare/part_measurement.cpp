@@ -9,10 +9,10 @@
 namespace embody::catalog {
 namespace {
 
-constexpr double part_weld_share = 1e-6;  // of the part's diagonal
+constexpr double part_weld_fraction = 1e-6;  // of the part's diagonal
 
 geometry::SolidAndShell measure(const geometry::TriangleMesh& mesh) {
-    const double tolerance = part_weld_share * length(geometry::bounds(mesh).size());
+    const double tolerance = part_weld_fraction * length(geometry::bounds(mesh).size());
     return geometry::integrate_solid_and_shell(geometry::oriented_outwards(geometry::weld(mesh, tolerance)));
 }
 
@@ -30,8 +30,8 @@ std::vector<attributes::PartFacts> measure_parts(const interchange::RawScene& sc
     std::ranges::stable_sort(parts, std::greater{}, [](const auto& part) { return part.form.shell.volume; });
 
     // Merges the small ones.
-    for (; parts.size() > most_parts; parts.pop_back()) {
-        attributes::PartFacts& rest = parts[most_parts - 1];
+    for (; parts.size() > max_parts; parts.pop_back()) {
+        attributes::PartFacts& rest = parts[max_parts - 1];
         rest.material.clear();
         rest.form.shell = geometry::combined(rest.form.shell, parts.back().form.shell);
         rest.form.solid = geometry::combined(rest.form.solid, parts.back().form.solid);

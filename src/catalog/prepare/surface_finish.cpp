@@ -17,7 +17,7 @@ using interchange::RawMesh;
 using interchange::RawScene;
 
 const double smooth_below = std::cos(40.0 * 3.14159265358979323846 / 180.0);
-constexpr std::size_t most_neighbours = 64;  // at one point; more are a fan whose middle may shade flat
+constexpr std::size_t max_neighbours = 64;  // at one point; more are a fan whose middle may shade flat
 
 /// For each vertex the number of its place: vertices at equal positions have the same one.
 std::vector<std::uint32_t> places_of(const std::vector<Vec3f>& positions) {
@@ -60,7 +60,7 @@ void add_crease_normals(RawMesh& mesh) {
         for (const std::uint32_t corner : mesh.triangles[i]) {
             Vec3 sum = areas[i];
             const auto& neighbours = around[place[corner]];
-            for (std::size_t k = 0; k < std::min(neighbours.size(), most_neighbours); ++k) {
+            for (std::size_t k = 0; k < std::min(neighbours.size(), max_neighbours); ++k) {
                 const std::uint32_t other = neighbours[k];
                 if (other != i && dot(normalized(areas[other]), own) > smooth_below) sum += areas[other];
             }

@@ -22,7 +22,7 @@ using interchange::RawScene;
 
 constexpr int samples_a_side = 3;    // rays a pixel: 9
 constexpr double view_angle = 0.35;  // half of the field of view, rad
-constexpr int most_layers = 8;       // transparent surfaces looked through
+constexpr int max_layers = 8;        // transparent surfaces looked through
 const Vec3 toward_viewer = normalized(Vec3{0.55, 0.45, 0.9});
 const Vec3 toward_sun = normalized(Vec3{0.35, 0.85, 0.6});
 constexpr double sun = 0.5, sky = 0.45, ground = 0.22;  // light, linear
@@ -32,7 +32,7 @@ double srgb_from_linear(double v) {
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
 }
 /// A fraction 0 … 1 as a byte.
-std::uint8_t byte_from(double share) { return static_cast<std::uint8_t>(std::lround(255 * share)); }
+std::uint8_t byte_from(double fraction) { return static_cast<std::uint8_t>(std::lround(255 * fraction)); }
 double linear_from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 /// The hit of a ray: place, normal and material there.
@@ -191,7 +191,7 @@ Vec3 shaded(const TracedScene& traced, const SurfacePoint& point, double step, R
 std::array<double, 4> seen_along(const TracedScene& traced, ViewRay ray, double step, Random& random) {
     std::array<double, 4> seen{};
     double open = 1;
-    for (int layer = 0; layer < most_layers && open > 0.02; ++layer) {
+    for (int layer = 0; layer < max_layers && open > 0.02; ++layer) {
         SurfacePoint point;
         if (!traced.hit(ray.origin, ray.direction, point)) break;
         const Vec3 color = shaded(traced, point, step, random) * (open * point.alpha);

@@ -70,7 +70,7 @@ bool answer(const ImportItem& item, const Result<PreparedModel>& prepared) {
             frame(out_of_memory ? FrameKind::out_of_memory : FrameKind::failed, to_bytes(prepared.error())));
     }
     const std::vector<std::uint8_t> payload = to_bytes(*prepared);
-    if (payload.size() <= largest_payload) return write_all(frame(FrameKind::prepared, payload));
+    if (payload.size() <= max_payload_bytes) return write_all(frame(FrameKind::prepared, payload));
     return write_all(frame(FrameKind::failed, to_bytes(Error{item.path, "is larger than 256 MiB when packed"})));
 }
 

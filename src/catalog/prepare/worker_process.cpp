@@ -148,7 +148,7 @@ void WorkerProcess::send_some() {
 bool WorkerProcess::receive_some() {
     std::array<std::uint8_t, 64 << 10> block;
     // No more than one frame ahead, so that a worker cannot fill the parent's memory.
-    while (incoming_.size() <= frame_header_size + largest_payload + frame_hash_size) {
+    while (incoming_.size() <= frame_header_size + max_payload_bytes + frame_hash_size) {
         const ssize_t got = read(from_worker_, block.data(), block.size());
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;

@@ -13,8 +13,8 @@ namespace embody::catalog {
 namespace {
 
 constexpr std::uint32_t magic = 0x57424D45;  // "EMBW"
-constexpr std::size_t longest_text = 64 << 10, longest_list = 4096, most_hull_points = 256;
-constexpr std::size_t largest_thumbnail = 4 << 20, largest_packed_hulls = 1 << 20;
+constexpr std::size_t max_text_bytes = 64 << 10, max_list_length = 4096, max_hull_points = 256;
+constexpr std::size_t max_thumbnail_bytes = 4 << 20, max_packed_hull_bytes = 1 << 20;
 const Error broken{"import worker", "sent something that is not its protocol"};
 
 std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
@@ -24,9 +24,9 @@ std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
 }
 
 void put(ByteWriter& out, const std::vector<std::string>& texts) {
-    const std::size_t count = std::min(texts.size(), longest_list);
+    const std::size_t count = std::min(texts.size(), max_list_length);
     out.number(static_cast<std::uint64_t>(count));
-    for (std::size_t i = 0; i < count; ++i) out.text(std::string_view(texts[i]).substr(0, longest_text));
+    for (std::size_t i = 0; i < count; ++i) out.text(std::string_view(texts[i]).substr(0, max_text_bytes));
 }
 void put(ByteWriter& out, Vec3 v) {
     for (int i = 0; i < 3; ++i) out.number(v[i]);
@@ -34,8 +34,8 @@ void put(ByteWriter& out, Vec3 v) {
 void put(ByteWriter& out, std::optional<bool> answer) { out.number(std::uint8_t(answer ? (*answer ? 2 : 1) : 0)); }
 
 std::vector<std::string> take_texts(ByteReader& in) {
-    std::vector<std::string> texts(in.count(longest_list, sizeof(std::uint64_t)));
-    for (std::string& text : texts) text = in.text(longest_text);
+    std::vector<std::string> texts(in.count(max_list_length, sizeof(std::uint64_t)));
+    for (std::string& text : texts) text = in.text(max_text_bytes);
     return texts;
 }
 double take_finite(ByteReader& in) {
@@ -81,15 +81,15 @@ geometry::MassProperties take_mass_properties(ByteReader& in) {
 void put(ByteWriter& out, const std::vector<attributes::PartFacts>& parts) {
     out.number(static_cast<std::uint64_t>(parts.size()));
     for (const attributes::PartFacts& part : parts) {
-        out.text(std::string_view(part.material).substr(0, longest_text));
+        out.text(std::string_view(part.material).substr(0, max_text_bytes));
         put(out, part.form.shell);
         put(out, part.form.solid);
     }
 }
 std::vector<attributes::PartFacts> take_parts(ByteReader& in) {
-    std::vector<attributes::PartFacts> parts(in.count(most_parts, sizeof(std::uint64_t)));
+    std::vector<attributes::PartFacts> parts(in.count(max_parts, sizeof(std::uint64_t)));
     for (attributes::PartFacts& part : parts) {
-        part.material = in.text(longest_text);
+        part.material = in.text(max_text_bytes);
         part.form.shell = take_mass_properties(in);
         part.form.solid = take_mass_properties(in);
     }
@@ -121,14 +121,14 @@ attributes::GeometryFacts take_geometry_facts(ByteReader& in) {
     for (int i = 0; i < 3; ++i) facts.size[i] = take_measure(in);
     facts.closed = take_truth(in);
     facts.volume = take_measure(in);
-    facts.volume_method = in.text(longest_text);
+    facts.volume_method = in.text(max_text_bytes);
     facts.volume_relative_error = take_measure(in);
     facts.center_of_volume = take_vector(in);
     for (int c = 0; c < 3; ++c) facts.unit_inertia.column(c) = take_vector(in);
     facts.hull_volume = take_measure(in);
     facts.hull_concavity = take_measure(in);
     facts.surface_area = take_measure(in);
-    facts.fitted_shape = in.text(longest_text);
+    facts.fitted_shape = in.text(max_text_bytes);
     const auto& shape = facts.fitted_shape;
     if (shape != "box" && shape != "sphere" && shape != "capsule" && shape != "cylinder" && shape != "convex_hull")
         in.fail();
@@ -156,10 +156,10 @@ void put(ByteWriter& out, const attributes::ModelFacts& facts) {
 
 attributes::ModelFacts take_model_facts(ByteReader& in) {
     attributes::ModelFacts facts;
-    facts.name = in.text(longest_text);
+    facts.name = in.text(max_text_bytes);
     facts.tags = take_texts(in);
-    facts.catalogue_category = in.text(longest_text);
-    facts.folder = in.text(longest_text);
+    facts.catalogue_category = in.text(max_text_bytes);
+    facts.folder = in.text(max_text_bytes);
     facts.material_names = take_texts(in);
     facts.movable = take_answer(in);
     facts.door_or_window = take_truth(in);
@@ -188,7 +188,7 @@ Result<FrameHeader> read_frame_header(std::span<const std::uint8_t> bytes) {
     const auto size = in.number<std::uint32_t>();
     const bool known = kind >= static_cast<std::uint32_t>(FrameKind::ready) &&
                        kind <= static_cast<std::uint32_t>(FrameKind::out_of_memory);
-    if (!is_ours || !known || size > largest_payload || !in.is_complete()) return broken;
+    if (!is_ours || !known || size > max_payload_bytes || !in.is_complete()) return broken;
     return FrameHeader{static_cast<FrameKind>(kind), size};
 }
 
@@ -223,7 +223,7 @@ Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload) {
     ImportItem item;
     for (std::string* text : {&item.key, &item.archive, &item.path, &item.icon_path, &item.name, &item.source,
                               &item.licence, &item.author, &item.category, &item.stated_thing}) {
-        *text = in.text(longest_text);
+        *text = in.text(max_text_bytes);
     }
     item.tags = take_texts(in);
     const bool has_size = take_truth(in);
@@ -266,11 +266,11 @@ std::vector<std::uint8_t> to_bytes(const PreparedModel& model) {
 Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload) {
     ByteReader in(payload);
     PreparedModel model;
-    const auto geometry = in.block(largest_payload);
+    const auto geometry = in.block(max_payload_bytes);
     model.geometry.assign(geometry.begin(), geometry.end());
-    const auto thumbnail = in.block(largest_thumbnail);
+    const auto thumbnail = in.block(max_thumbnail_bytes);
     model.thumbnail.assign(thumbnail.begin(), thumbnail.end());
-    model.hull_points.resize(in.count(most_hull_points, sizeof(Vec3f)));
+    model.hull_points.resize(in.count(max_hull_points, sizeof(Vec3f)));
     for (Vec3f& p : model.hull_points) {
         for (float* part : {&p.x, &p.y, &p.z}) {
             *part = in.number<float>();
@@ -281,7 +281,7 @@ Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload) {
     model.convex_parts.hull_error = take_measure(in);
     model.convex_parts.concavity = take_measure(in);
     model.convex_parts.hull_concavity = take_measure(in);
-    auto hulls = unpack_hulls(in.block(largest_packed_hulls));
+    auto hulls = unpack_hulls(in.block(max_packed_hull_bytes));
     if (!hulls || model.convex_parts.max_hulls < 0) return broken;
     model.convex_parts.hulls = std::move(*hulls);
     model.facts = take_model_facts(in);
@@ -298,7 +298,7 @@ Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload) {
 std::vector<std::uint8_t> to_bytes(const Error& error) {
     ByteWriter out;
     for (const std::string* text : {&error.where, &error.why, &error.remedy}) {
-        out.text(std::string_view(*text).substr(0, longest_text));
+        out.text(std::string_view(*text).substr(0, max_text_bytes));
     }
     return out.take();
 }
@@ -306,7 +306,7 @@ std::vector<std::uint8_t> to_bytes(const Error& error) {
 Error error_from_bytes(std::span<const std::uint8_t> payload) {
     ByteReader in(payload);
     Error error;
-    for (std::string* text : {&error.where, &error.why, &error.remedy}) *text = in.text(longest_text);
+    for (std::string* text : {&error.where, &error.why, &error.remedy}) *text = in.text(max_text_bytes);
     return in.is_complete() && !error.why.empty() ? error : broken;
 }
 

@@ -18,7 +18,7 @@ enum class FrameKind : std::uint32_t { ready = 1, item = 2, prepared = 3, failed
 inline constexpr std::uint32_t protocol_version = 4;
 inline constexpr std::size_t frame_header_size = 16;
 inline constexpr std::size_t frame_hash_size = 8;
-inline constexpr std::size_t largest_payload = std::size_t{256} << 20;  ///< bytes; more is refused on both ends
+inline constexpr std::size_t max_payload_bytes = std::size_t{256} << 20;  ///< bytes; more is refused on both ends
 
 struct FrameHeader {
     FrameKind kind = FrameKind::failed;

@@ -20,10 +20,10 @@ constexpr std::size_t most_components = 128;  // more, and the whole is cut inst
 
 Result<void> validate(const DecompositionParameters& p) {
     const std::string where = "convex decomposition: ";
-    if (p.max_hulls < 1 || p.max_hulls > most_decomposition_hulls) {
+    if (p.max_hulls < 1 || p.max_hulls > max_decomposition_hulls) {
         return Error{where + "max_hulls", "must be from 1 to 256, got " + std::to_string(p.max_hulls)};
     }
-    if (!(p.hull_error >= least_hull_error) || !(p.hull_error <= largest_extent)) {
+    if (!(p.hull_error >= min_hull_error) || !(p.hull_error <= largest_extent)) {
         return Error{where + "hull_error",
                      "must be from 0.0001 m to 100 km, got " + std::to_string(p.hull_error) + " m"};
     }

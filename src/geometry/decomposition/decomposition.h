@@ -10,8 +10,8 @@
 
 namespace embody::geometry {
 
-inline constexpr int most_decomposition_hulls = 256;
-inline constexpr double least_hull_error = 1e-4;  ///< m
+inline constexpr int max_decomposition_hulls = 256;
+inline constexpr double min_hull_error = 1e-4;  ///< m
 
 struct DecompositionParameters {
     int max_hulls = 16;        ///< 1 … 256; the error is exceeded where that is too few

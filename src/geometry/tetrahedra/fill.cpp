@@ -107,7 +107,7 @@ Result<TetrahedralFilling> fill_with_tetrahedra(const TriangleMesh& surface, con
     filling.left_out_components = components.volumes.size() - static_cast<std::size_t>(kept);
     keep_components(found.mesh, components, static_cast<std::size_t>(kept));
     find_surface(found.mesh);
-    filling.volume_share = volume(found.mesh) / estimate.solid.volume;
+    filling.volume_fraction = volume(found.mesh) / estimate.solid.volume;
     filling.mesh = std::move(found.mesh);
     filling.component_of = std::move(components.component_of);
     filling.component_volumes = std::move(components.volumes);

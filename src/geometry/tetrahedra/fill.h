@@ -24,7 +24,7 @@ struct TetrahedralFilling {
     std::size_t left_out_components = 0;      ///< below `least_component`
     /// The mesh's fraction of the volume that the surface encloses (estimate_volume). Well below 1 where parts
     /// are thinner than a cell, which the lattice misses.
-    double volume_share = 0;
+    double volume_fraction = 0;
     VolumeMethod method = VolumeMethod::no_volume;  ///< where that volume comes from
 };
 

@@ -17,7 +17,7 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::uint64_t most_members = 1'000'000;
+constexpr std::uint64_t max_members = 1'000'000;
 
 std::string in_lower_case(std::string_view text) {
     std::string lower(text);
@@ -55,7 +55,7 @@ Archive::~Archive() = default;
 Result<Archive> Archive::open(const std::filesystem::path& file) {
     auto state = std::make_unique<State>();
     state->file = file;
-    auto opened = RegularFile::open(file, largest_file);
+    auto opened = RegularFile::open(file, max_file_bytes);
     if (!opened) return opened.error();
     zlib_filefunc64_def functions{};
     fill_fopen64_filefunc(&functions);
@@ -67,7 +67,7 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
 
     // The stated number of members bounds the loop: a damaged list may lead in circles.
     unz_global_info64 info{};
-    if (unzGetGlobalInfo64(state->zip, &info) != UNZ_OK || info.number_entry > most_members) {
+    if (unzGetGlobalInfo64(state->zip, &info) != UNZ_OK || info.number_entry > max_members) {
         return Error{file.string(), "the archive's list of members is damaged"};
     }
     for (std::uint64_t i = 0; i < info.number_entry; ++i) {

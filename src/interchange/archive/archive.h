@@ -22,7 +22,7 @@ struct ArchiveMember {
 class Archive {
 public:
     /// Reads the list of members of the file at this canonical path, nothing else. Refuses files that are no zip or
-    /// larger than largest_file, and lists of more than a million members.
+    /// larger than max_file_bytes, and lists of more than a million members.
     static Result<Archive> open(const std::filesystem::path& file);
     Archive(Archive&&) noexcept;
     Archive& operator=(Archive&&) noexcept;
@@ -37,7 +37,7 @@ public:
     Result<std::vector<std::uint8_t>> read(std::string_view path, std::uint64_t limit = default_limit) const;
 
     static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;  ///< bytes unpacked
-    static constexpr std::uint64_t largest_file = std::uint64_t{16} << 30;    ///< bytes packed
+    static constexpr std::uint64_t max_file_bytes = std::uint64_t{16} << 30;  ///< bytes packed
 
 private:
     struct State;

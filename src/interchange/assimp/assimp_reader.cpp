@@ -24,8 +24,8 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::size_t most_triangles = 20'000'000;
-constexpr std::size_t most_nodes = 1'000'000;
+constexpr std::size_t max_triangles = 20'000'000;
+constexpr std::size_t max_nodes = 1'000'000;
 
 // Those of read_model()'s formats that have no reader of their own.
 constexpr std::array<std::string_view, 6> our_extensions{"obj", "stl", "dae", "gltf", "glb", "ac"};
@@ -110,14 +110,13 @@ Result<void> add_meshes(const aiScene& read, RawScene& scene) {
     while (!open.empty()) {
         const Visit visit = open.back();
         open.pop_back();
-        if (++nodes > most_nodes) return Error{"nodes", "are more than " + std::to_string(most_nodes)};
+        if (++nodes > max_nodes) return Error{"nodes", "are more than " + std::to_string(max_nodes)};
         for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
             if (visit.node->mMeshes[i] >= read.mNumMeshes) return Error{visit.node->mName.C_Str(), "refers to no mesh"};
             auto mesh = mesh_of(*read.mMeshes[visit.node->mMeshes[i]], visit.to_scene);
             if (!mesh) return mesh.error();
             triangles += mesh->triangles.size();
-            if (triangles > most_triangles)
-                return Error{"triangles", "are more than " + std::to_string(most_triangles)};
+            if (triangles > max_triangles) return Error{"triangles", "are more than " + std::to_string(max_triangles)};
             if (mesh->material >= static_cast<int>(scene.materials.size())) mesh->material = -1;
             if (!mesh->triangles.empty()) scene.meshes.push_back(std::move(*mesh));
         }

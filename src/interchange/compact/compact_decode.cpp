@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_elements = 100'000'000;
+constexpr std::size_t max_elements = 100'000'000;
 const Error damaged{"compact geometry", "is damaged"};
 
 /// A view that encode() wrote: what is packed where. The numbers are unchecked until unpack.
@@ -30,7 +30,7 @@ Result<PackedView> packed_view_of(const json& document, const json& accessor, co
     if (offset > glb.binary.size() || length > glb.binary.size() - offset) return damaged;
     PackedView packed{glb.binary.subspan(offset, length), extension.at("count").get<std::size_t>(),
                       extension.at("byteStride").get<std::size_t>()};
-    if (packed.count > most_elements || packed.count != accessor.at("count").get<std::size_t>()) return damaged;
+    if (packed.count > max_elements || packed.count != accessor.at("count").get<std::size_t>()) return damaged;
     return packed;
 }
 
@@ -80,7 +80,7 @@ Result<geometry::TriangleMesh> mesh_of(const json& document, const GlbView& glb)
         if (!position_view || !index_view) return damaged;
         const auto positions = unpack_positions(*position_view);
         const auto indices = unpack_indices(*index_view);
-        if (!positions || !indices || mesh.positions.size() + positions->size() > most_elements) return damaged;
+        if (!positions || !indices || mesh.positions.size() + positions->size() > max_elements) return damaged;
 
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const auto& q : *positions) {

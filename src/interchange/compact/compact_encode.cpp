@@ -297,7 +297,7 @@ private:
         const auto [known, is_new] = images_of_.try_emplace(index);
         if (is_new) {
             const RawImage& image = scene_.images[static_cast<std::size_t>(index)];
-            if (const auto stored = reduce_texture(image, largest_texture); stored) {
+            if (const auto stored = reduce_texture(image, max_texture_side); stored) {
                 known->second = {static_cast<int>(images_.size()), stored->transparency};
                 views_.push_back(
                     {{"buffer", 0}, {"byteOffset", append(stored->bytes)}, {"byteLength", stored->bytes.size()}});

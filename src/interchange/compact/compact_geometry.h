@@ -14,7 +14,7 @@ namespace embody::interchange {
 /// Version of the stored form, in asset.extras.embody.version. Decoding refuses any other.
 inline constexpr int compact_geometry_version = 1;
 /// Textures are reduced to this many pixels on their longer side.
-inline constexpr int largest_texture = 1024;
+inline constexpr int max_texture_side = 1024;
 
 struct CompactGeometry {
     std::vector<std::uint8_t> bytes;

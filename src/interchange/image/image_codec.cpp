@@ -32,7 +32,7 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::int64_t most_pixels = 64'000'000;
+constexpr std::int64_t max_pixels = 64'000'000;
 
 bool fits_int(std::size_t size) { return size <= static_cast<std::size_t>(std::numeric_limits<int>::max()); }
 
@@ -75,7 +75,7 @@ Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) {
 Result<Image> decode_image(std::span<const std::uint8_t> bytes) {
     const auto header = read_image_header(bytes);
     if (!header) return header.error();
-    if (std::int64_t{header->width} * header->height > most_pixels) {
+    if (std::int64_t{header->width} * header->height > max_pixels) {
         return Error{"image",
                      std::to_string(header->width) + " × " + std::to_string(header->height) + " pixels are too many"};
     }

@@ -21,7 +21,7 @@ namespace {
 
 // A progressive image of a few kilobytes may ask for as many passes over all of its pixels as it has bytes; cameras and
 // editors write about ten.
-constexpr int most_scans = 200;
+constexpr int max_scans = 200;
 
 /// libjpeg's objects for one image.
 class JpegReader {
@@ -103,9 +103,9 @@ private:
     }
     static void on_message(j_common_ptr, int) {}
     static void on_progress(j_common_ptr info) {
-        if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= most_scans) return;
+        if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= max_scans) return;
         JpegReader& reader = reader_of(info);
-        std::snprintf(reader.message_.data(), reader.message_.size(), "it has more than %d scans", most_scans);
+        std::snprintf(reader.message_.data(), reader.message_.size(), "it has more than %d scans", max_scans);
         std::longjmp(reader.back_, 1);
     }
 

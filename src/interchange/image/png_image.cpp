@@ -17,9 +17,9 @@
 namespace embody::interchange {
 namespace {
 
-constexpr png_uint_32 longest_png_side = 32768;
-constexpr png_alloc_size_t most_chunk_bytes = 8 << 20;  // unpacked, of one text or colour profile
-constexpr png_uint_32 most_chunks = 128;                // that libpng keeps
+constexpr png_uint_32 max_png_side = 32768;
+constexpr png_alloc_size_t max_chunk_bytes = 8 << 20;  // unpacked, of one text or colour profile
+constexpr png_uint_32 max_chunks = 128;                // that libpng keeps
 
 /// libpng's objects for one image, and where it reads from.
 class PngReader {
@@ -32,9 +32,9 @@ public:
             throw std::bad_alloc();
         }
         png_set_read_fn(png_, this, read_some);
-        png_set_user_limits(png_, longest_png_side, longest_png_side);
-        png_set_chunk_malloc_max(png_, most_chunk_bytes);
-        png_set_chunk_cache_max(png_, most_chunks);
+        png_set_user_limits(png_, max_png_side, max_png_side);
+        png_set_chunk_malloc_max(png_, max_chunk_bytes);
+        png_set_chunk_cache_max(png_, max_chunks);
     }
     ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
     PngReader(const PngReader&) = delete;

@@ -8,7 +8,7 @@ namespace embody::interchange {
 namespace {
 
 constexpr std::size_t header_size = 512;
-constexpr std::size_t longest_sgi_side = 32768;
+constexpr std::size_t max_sgi_side = 32768;
 
 /// Big-endian numbers of the file; where it ends before them, 0.
 std::size_t number_at(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
@@ -31,7 +31,7 @@ std::optional<Form> form_of(std::span<const std::uint8_t> bytes) {
               dimensions < 3 ? 1 : number_at(bytes, 10, 2)};
     const bool usual = bytes[2] <= 1 && bytes[3] == 1 && number_at(bytes, 104, 4) == 0;
     const bool has_pixels = form.width > 0 && form.height > 0 && form.channels > 0 && form.channels <= 4;
-    if (!usual || !has_pixels || std::max(form.width, form.height) > longest_sgi_side) return std::nullopt;
+    if (!usual || !has_pixels || std::max(form.width, form.height) > max_sgi_side) return std::nullopt;
     return form;
 }
 

@@ -12,7 +12,7 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::size_t most_elements = 100, most_properties = 1000;
+constexpr std::size_t max_elements = 100, max_properties = 1000;
 
 std::optional<PlyType> type_named(std::string_view name) {
     using enum PlyType;
@@ -121,7 +121,7 @@ private:
                 read.ec != std::errc() || read.ptr != end) {
                 return fail("has no count of elements: " + one_line(words[2]));
             }
-            if (header_.elements.size() >= most_elements) return fail("declares too many elements");
+            if (header_.elements.size() >= max_elements) return fail("declares too many elements");
             header_.elements.push_back(std::move(element));
             return {};
         }
@@ -139,7 +139,7 @@ private:
         }
         if (property.count_type >= PlyType::float32) return fail("counts a list in fractions");
         auto& properties = header_.elements.back().properties;
-        if (properties.size() >= most_properties) return fail("declares too many properties");
+        if (properties.size() >= max_properties) return fail("declares too many properties");
         properties.push_back(std::move(property));
         return {};
     }
@@ -148,18 +148,18 @@ private:
     Result<void> check_counts() const {
         std::uint64_t left = file_.size() + 1 - at_;
         for (const PlyElement& element : header_.elements) {
-            std::uint64_t least = 0;
+            std::uint64_t min_bytes = 0;
             for (const PlyProperty& property : element.properties) {
                 const bool is_text = header_.encoding == PlyEncoding::ascii;
-                least += is_text ? 2 : size_of(property.count_type.value_or(property.type));
+                min_bytes += is_text ? 2 : size_of(property.count_type.value_or(property.type));
             }
-            if (least > 0 && element.count > left / least) {
+            if (min_bytes > 0 && element.count > left / min_bytes) {
                 return Error{
                     "element " + one_line(element.name),
                     "is said to be there " + std::to_string(element.count) + " times, more than the file holds",
                     "is the file complete?"};
             }
-            left -= least * element.count;
+            left -= min_bytes * element.count;
         }
         return {};
     }

@@ -18,7 +18,7 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::size_t most_triangles = 20'000'000;
+constexpr std::size_t max_triangles = 20'000'000;
 
 /// The file's elements one after another, made into one mesh.
 class PlyReader {
@@ -166,8 +166,8 @@ private:
     }
 
     Result<void> add_triangle(const std::array<std::uint32_t, 3>& triangle) {
-        if (mesh_.triangles.size() >= most_triangles) {
-            return Error{"", "is one triangle more than " + std::to_string(most_triangles)};
+        if (mesh_.triangles.size() >= max_triangles) {
+            return Error{"", "is one triangle more than " + std::to_string(max_triangles)};
         }
         mesh_.triangles.push_back(triangle);
         return {};
@@ -190,8 +190,8 @@ private:
         }
         // Corners with texture coordinates of their own are vertices of their own.
         if (!corner_texture_.empty() && corner_texture_.size() == 2 * corners_.size()) {
-            if (mesh_.positions.size() + corners_.size() > 3 * most_triangles) {
-                return Error{"", "makes more than " + std::to_string(3 * most_triangles) + " corners with textures"};
+            if (mesh_.positions.size() + corners_.size() > 3 * max_triangles) {
+                return Error{"", "makes more than " + std::to_string(3 * max_triangles) + " corners with textures"};
             }
             for (std::size_t i = 0; i < corners_.size(); ++i) corners_[i] = split_corner(i);
         }

@@ -13,8 +13,8 @@ namespace embody::interchange {
 namespace {
 
 using Properties = std::map<std::string, std::string, std::less<>>;
-constexpr std::uint64_t longest_list = 32 << 20;  // bytes; the longest known is 0.15 MB
-constexpr int most_pieces = 100'000;
+constexpr std::uint64_t max_list_bytes = 32 << 20;  // bytes; the longest known is 0.15 MB
+constexpr int max_pieces = 100'000;
 
 std::string trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
@@ -107,7 +107,7 @@ Result<SweethomeCatalogue> read_sweethome_catalogue(const std::filesystem::path&
     std::string list_path = archive->find("PluginFurnitureCatalog.properties");
     if (list_path.empty()) list_path = archive->find("com/eteks/sweethome3d/io/DefaultFurnitureCatalog.properties");
     if (list_path.empty()) return Error{file.string(), "holds no Sweet Home 3D furniture catalogue"};
-    const auto bytes = archive->read(list_path, longest_list);
+    const auto bytes = archive->read(list_path, max_list_bytes);
     if (!bytes) return bytes.error();
     const Properties properties = parse_properties(std::string(bytes->begin(), bytes->end()));
 
@@ -119,7 +119,7 @@ Result<SweethomeCatalogue> read_sweethome_catalogue(const std::filesystem::path&
     catalogue.version = text_of(properties, "version");
 
     // Numbered from 1 without gaps, as the program itself reads them.
-    for (int i = 1; i <= most_pieces && properties.contains("name#" + std::to_string(i)); ++i) {
+    for (int i = 1; i <= max_pieces && properties.contains("name#" + std::to_string(i)); ++i) {
         auto piece = piece_of(properties, std::to_string(i));
         if (piece && archive->find(piece->model_path).empty()) {
             piece = Error{"model#" + std::to_string(i), "is not in the archive: " + piece->model_path};

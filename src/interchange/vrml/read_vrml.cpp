@@ -52,10 +52,10 @@
 namespace embody::interchange {
 namespace {
 
-constexpr std::size_t most_triangles = 20'000'000;
-constexpr std::size_t most_nodes = 1'000'000;
-constexpr std::size_t most_materials = 1'000;
-constexpr std::size_t deepest = 250;  // nodes in nodes; Coin reads and walks them by recursion
+constexpr std::size_t max_triangles = 20'000'000;
+constexpr std::size_t max_nodes = 1'000'000;
+constexpr std::size_t max_materials = 1'000;
+constexpr std::size_t max_depth = 250;  // nodes in nodes; Coin reads and walks them by recursion
 
 // The first message of Coin since the last reset: it reports through global handlers.
 std::string first_complaint;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
@@ -113,7 +113,7 @@ void start_coin() {
 
 /// The depth of nested braces, outside of comments and strings.
 std::size_t depth_of(std::string_view text) {
-    std::size_t depth = 0, greatest = 0;
+    std::size_t depth = 0, max_depth_so_far = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] == '#') {
             i = std::min(text.find_first_of("\r\n", i), text.size());
@@ -122,12 +122,12 @@ std::size_t depth_of(std::string_view text) {
                 if (text[i] == '\\') ++i;
             }
         } else if (text[i] == '{') {
-            greatest = std::max(greatest, ++depth);
+            max_depth_so_far = std::max(max_depth_so_far, ++depth);
         } else if (text[i] == '}' && depth > 0) {
             --depth;
         }
     }
-    return greatest;
+    return max_depth_so_far;
 }
 
 /// How many values the list of this name has in the node that the field holds; 0 where there is none.
@@ -242,10 +242,10 @@ private:
     }
 
     SoCallbackAction::Response visit(SoCallbackAction& action, const SoNode& node) {
-        if (++nodes_ > most_nodes) fail("nodes", "are more than " + std::to_string(most_nodes));
+        if (++nodes_ > max_nodes) fail("nodes", "are more than " + std::to_string(max_nodes));
         // A node may be used inside of itself: then the path never ends.
-        if (static_cast<std::size_t>(action.getCurPath()->getLength()) > 2 * deepest) {
-            fail("nodes", "stand deeper in each other than " + std::to_string(deepest));
+        if (static_cast<std::size_t>(action.getCurPath()->getLength()) > 2 * max_depth) {
+            fail("nodes", "stand deeper in each other than " + std::to_string(max_depth));
         }
         if (node.isOfType(SoVRMLShape::getClassTypeId())) {
             material_name_.clear();
@@ -299,7 +299,7 @@ private:
         const auto known = meshes_.find(key);
         if (known != meshes_.end()) return scene_.meshes[known->second];
         // One material for each vertex colour would be too many.
-        if (meshes_.size() >= most_materials) return scene_.meshes.back();
+        if (meshes_.size() >= max_materials) return scene_.meshes.back();
 
         RawMaterial material;
         material.name = material_name_.empty() ? "material " + std::to_string(meshes_.size() + 1) : material_name_;
@@ -333,7 +333,7 @@ private:
 
     void add(SoCallbackAction& action, std::array<const SoPrimitiveVertex*, 3> corners) {
         if (error_) return;
-        if (++triangles_ > most_triangles) return fail("triangles", "are more than " + std::to_string(most_triangles));
+        if (++triangles_ > max_triangles) return fail("triangles", "are more than " + std::to_string(max_triangles));
         take_transform(action.getModelMatrix());
         RawMesh& mesh = mesh_of(action, corners[0]->getMaterialIndex());
         // The last mesh may have got triangles of another surface.
@@ -387,8 +387,8 @@ Result<RawScene> read_vrml(const FileSource& source, const std::string& path) {
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     if (text.empty()) return Error{where, "is empty"};
     if (!text.starts_with("#VRML V2.0")) return Error{where, "is no VRML 2.0 text", "save it as VRML97 or glTF"};
-    if (depth_of(text) > deepest) {
-        return Error{where, "nests nodes deeper than " + std::to_string(deepest)};
+    if (depth_of(text) > max_depth) {
+        return Error{where, "nests nodes deeper than " + std::to_string(max_depth)};
     }
 
     start_coin();

@@ -13,7 +13,7 @@
 namespace embody::scene {
 
 /// Maximum number of entities of one document: more would fill the memory before they were simulated.
-inline constexpr std::size_t most_entities = 300'000;
+inline constexpr std::size_t max_entities = 300'000;
 
 /// Eye position and target of the camera.
 struct Camera {

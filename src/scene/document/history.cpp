@@ -10,7 +10,7 @@ namespace embody::scene {
 
 namespace {
 
-constexpr std::size_t most_edits = 1000;
+constexpr std::size_t max_edits = 1000;
 /// Up to this many entities that come or go in a row are inserted or erased one by one.
 constexpr std::size_t few_entities = 4;
 
@@ -166,7 +166,7 @@ void History::add(Edit edit) {
     if (!edit.catalog) ++document_edits_;
     done_.push_back(std::move(edit));
     merging_ = true;
-    if (done_.size() > most_edits) {
+    if (done_.size() > max_edits) {
         if (!done_.front().catalog) {
             --document_edits_;
             if (saved_ >= 0) --saved_;

@@ -24,7 +24,7 @@ using attributes::PhysicalKind;
 namespace {
 
 /// Few sets of a document are different, unless each entity has its own numbers: then caching more has no use.
-constexpr std::size_t most_shared_sets = 4096;
+constexpr std::size_t max_shared_sets = 4096;
 
 // The entity's own attributes, checked: a document that a program made was not checked by the file's reader.
 Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
@@ -121,8 +121,8 @@ AttributeSet solid_attributes(const std::string& category, const physics::ShapeD
 }
 
 // Adds the resolution of grains or liquid for the size of this thing.
-void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry) {
-    attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
+void complete_resolution(AttributeSet& set, const attributes::GeometryFacts& geometry) {
+    attributes::put_resolution(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
 }
 
 // Key of everything that an entity's attributes follow from.
@@ -181,7 +181,7 @@ Result<AttributeSet> EntityAttributes::acting(const Entity& entity) {
         const ModelFacts& facts = facts_of(entity, *shape);
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
-        complete_fineness(set, facts.geometry);
+        complete_resolution(set, facts.geometry);
         attributes::put_mass_of_primitive(set, facts.geometry);
         return set;
     }
@@ -192,7 +192,7 @@ Result<AttributeSet> EntityAttributes::acting(const Entity& entity) {
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
     AttributeSet set =
         own.value().empty() ? std::move(automatic).value() : lay_over(automatic.value(), own.value(), facts);
-    complete_fineness(set, facts.geometry);
+    complete_resolution(set, facts.geometry);
     return set;
 }
 
@@ -204,7 +204,7 @@ Result<SharedAttributes> EntityAttributes::shared(const Entity& entity) {
     SharedAttributes set = std::make_shared<const AttributeSet>(std::move(made).value());
     if (!key.is_shared()) return set;
     // Entities that hold a set keep it.
-    if (sets_.size() >= most_shared_sets) sets_.clear();
+    if (sets_.size() >= max_shared_sets) sets_.clear();
     sets_.emplace(std::move(key), set);
     return set;
 }

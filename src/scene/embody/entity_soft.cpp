@@ -12,20 +12,20 @@ namespace {
 
 // Collision radius as a fraction of the cell size, and its bounds (m): small beside the drawn form, large beside
 // rounding errors.
-constexpr double radius_share = 0.02, least_radius = 5e-4, greatest_radius = 5e-3;
+constexpr double radius_fraction = 0.02, min_radius = 5e-4, max_radius = 5e-3;
 
 }  // namespace
 
 std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>& nodes) {
-    std::vector<std::uint32_t> near;
+    std::vector<std::uint32_t> within;
     std::uint32_t nearest = 0;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         const double distance = length(nodes[i] - pin.position);
-        if (distance <= pin.radius) near.push_back(i);
+        if (distance <= pin.radius) within.push_back(i);
         if (distance < length(nodes[nearest] - pin.position)) nearest = i;
     }
-    if (near.empty()) near.push_back(nearest);
-    return near;
+    if (within.empty()) within.push_back(nearest);
+    return within;
 }
 
 Result<physics::DeformableDefinition> EntityPoints::soft(const Entity& entity,
@@ -38,7 +38,7 @@ Result<physics::DeformableDefinition> EntityPoints::soft(const Entity& entity,
         attributes::soft_solid_from_attributes(attributes, scaled, models_.taxonomy());
     if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
     physics::DeformableDefinition soft = std::move(made).value();
-    soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);
+    soft.contact_radius = std::clamp(radius_fraction * mesh.value()->cell * entity.scale, min_radius, max_radius);
     return soft;
 }
 

@@ -15,8 +15,8 @@ namespace {
 
 // Collision radius of cloth: half of its thickness, but at least this fraction of an edge, so that corners between
 // nodes do not show. Bounds in m.
-constexpr double sheet_radius_share = 0.03, sheet_least_radius = 1e-3, sheet_greatest_radius = 0.02;
-constexpr double least_rope_radius = 5e-4, greatest_rope_radius = 0.5;
+constexpr double sheet_radius_fraction = 0.03, sheet_min_radius = 1e-3, sheet_max_radius = 0.02;
+constexpr double min_rope_radius = 5e-4, max_rope_radius = 0.5;
 
 double mean_edge(const attributes::SheetMesh& sheet) {
     double sum = 0;
@@ -42,7 +42,7 @@ Result<physics::DeformableDefinition> EntityPoints::thin(const Entity& entity,
         Result<physics::DeformableDefinition> rope =
             attributes::rope_from_attributes(attributes, nodes, diameter, models_.taxonomy());
         if (!rope.ok()) return in_attributes(rope.error());
-        rope.value().contact_radius = std::clamp(diameter / 2, least_rope_radius, greatest_rope_radius);
+        rope.value().contact_radius = std::clamp(diameter / 2, min_rope_radius, max_rope_radius);
         return rope;
     }
     attributes::SheetMesh sheet = std::get<attributes::SheetMesh>(*form.value());
@@ -52,7 +52,7 @@ Result<physics::DeformableDefinition> EntityPoints::thin(const Entity& entity,
     if (!cloth.ok()) return in_attributes(cloth.error());
     const double half = std::get<physics::Cloth>(cloth.value().matter).thickness / 2;
     cloth.value().contact_radius =
-        std::clamp(std::max(half, sheet_radius_share * mean_edge(sheet)), sheet_least_radius, sheet_greatest_radius);
+        std::clamp(std::max(half, sheet_radius_fraction * mean_edge(sheet)), sheet_min_radius, sheet_max_radius);
     return cloth;
 }
 

@@ -5,12 +5,12 @@ namespace embody::scene {
 
 namespace {
 
-constexpr std::size_t most_kept = 256;
+constexpr std::size_t max_kept = 256;
 
 template <class Forms>
 void keep_primitives(Forms& forms) {
     std::erase_if(forms, [](const auto& item) { return item.first.of != GeometryKey::Of::primitive; });
-    if (forms.size() > most_kept) forms.clear();
+    if (forms.size() > max_kept) forms.clear();
 }
 
 }  // namespace

@@ -17,14 +17,14 @@ constexpr double spacing = 1.1;  // of the rows, in diameters: 0.74 / 1.1³ = 0.
 // towards each other still do not touch.
 constexpr double shake = 0.028;
 // Maximum number of lattice places: they take about a second.
-constexpr std::size_t most_places = 50'000'000;
+constexpr std::size_t max_places = 50'000'000;
 // The rule for the diameter ignores edges: at most this fraction of the wanted number may be left out at the top.
-constexpr double most_left_out = 0.5;
+constexpr double max_left_out = 0.5;
 
 }  // namespace
 
-Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape, double diameter, std::size_t most,
-                                           std::uint64_t seed) {
+Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape, double diameter,
+                                           std::size_t max_count, std::uint64_t seed) {
     const Result<FilledRegion> region = FilledRegion::of(shape);
     if (!region.ok()) return region.error();
     const Bounds& bounds = region.value().bounds();
@@ -42,7 +42,7 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
     for (std::int64_t iy = 0; iy < count(size.y, layer); ++iy) {
         for (std::int64_t iz = 0; iz < count(size.z, row); ++iz) {
             for (std::int64_t ix = 0; ix < count(size.x, a); ++ix) {
-                if (++looked_at > most_places)
+                if (++looked_at > max_places)
                     return Error{"simulated_diameter", "is too small to fill so large a shape", "make it larger"};
                 const double shift_x = static_cast<double>((iz + iy % 3) % 2) * a / 2;
                 const double shift_z = static_cast<double>(iy % 3) * row / 3;
@@ -53,11 +53,11 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
                                         static_cast<double>(iz) * row + shift_z} +
                                    shaken * diameter;
                 if (!region.value().holds_ball(place, diameter / 2)) continue;
-                if (centers.size() < most) {
+                if (centers.size() < max_count) {
                     centers.push_back(place);
-                } else if (static_cast<double>(++left_out) > most_left_out * static_cast<double>(most)) {
+                } else if (static_cast<double>(++left_out) > max_left_out * static_cast<double>(max_count)) {
                     return Error{"grain_budget",
-                                 "of " + std::to_string(most) + " grains of " + std::to_string(diameter) +
+                                 "of " + std::to_string(max_count) + " grains of " + std::to_string(diameter) +
                                      " m does not fill the shape",
                                  "raise it, make simulated_diameter larger, or fill a smaller shape"};
                 }

@@ -19,10 +19,10 @@ using attributes::SheetMesh;
 using physics::DeformableDefinition;
 using physics::ShapeDefinition;
 
-constexpr double most_thickness = 1.0 / 3;  // of a sheet, relative to its width
-constexpr double most_width = 1.0 / 4;      // of a line, relative to its length
-constexpr double least_cover = 0.5;         // covered fraction of a triangle; a triangle with less is outside
-constexpr int samples = 4;                  // along an edge of a triangle
+constexpr double max_thickness = 1.0 / 3;  // of a sheet, relative to its width
+constexpr double max_width = 1.0 / 4;      // of a line, relative to its length
+constexpr double min_cover = 0.5;          // covered fraction of a triangle; a triangle with less is outside
+constexpr int samples = 4;                 // along an edge of a triangle
 
 // Axes by extent, the smallest first.
 std::array<int, 3> axes_by_extent(Vec3 size) {
@@ -58,7 +58,7 @@ struct Plane {
 Result<Plane> plane_of(Vec3 size) {
     const auto [thin, middle, wide] = axes_by_extent(size);
     if (!(size[middle] > 0)) return no_sheet("it has no area");
-    if (size[thin] > most_thickness * size[middle])
+    if (size[thin] > max_thickness * size[middle])
         return no_sheet("it is " + metres(size[thin]) + " thick and only " + metres(size[middle]) + " wide");
     return Plane{std::min(middle, wide), std::max(middle, wide), thin};
 }
@@ -147,7 +147,7 @@ LineForm straight_line(int axis, double half, double diameter, int segments) {
 
 Result<int> long_axis(Vec3 size) {
     const auto [thin, middle, longest] = axes_by_extent(size);
-    if (size[middle] > most_width * size[longest])
+    if (size[middle] > max_width * size[longest])
         return no_line("it is " + metres(size[longest]) + " long and " + metres(size[middle]) + " wide");
     return longest;
 }
@@ -162,8 +162,8 @@ template <class Visit>
 void for_each_sample(const geometry::TriangleMesh& surface, int axis, double spacing, Visit visit) {
     for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
         const auto [a, b, c] = geometry::corners(surface, i);
-        const double least = std::min({a[axis], b[axis], c[axis]}), most = std::max({a[axis], b[axis], c[axis]});
-        const int parts = std::clamp(static_cast<int>(2 * (most - least) / spacing) + 1, 1, 200);
+        const double low = std::min({a[axis], b[axis], c[axis]}), high = std::max({a[axis], b[axis], c[axis]});
+        const int parts = std::clamp(static_cast<int>(2 * (high - low) / spacing) + 1, 1, 200);
         const double area = length(cross(b - a, c - a)) / (parts * parts);
         for (int k = 0; k < parts; ++k) {
             for (int l = 0; k + l < parts; ++l)
@@ -193,7 +193,7 @@ Result<SheetMesh> sheet_of(const geometry::TriangleMesh& surface, int nodes) {
     SheetMesh sheet = rectangle(box, *plane, nodes);
     const geometry::BoundingVolumeTree tree(surface);
     std::erase_if(sheet.triangles, [&](const std::array<std::uint32_t, 3>& t) {
-        return cover_of({sheet.nodes[t[0]], sheet.nodes[t[1]], sheet.nodes[t[2]]}, surface, tree, *plane) < least_cover;
+        return cover_of({sheet.nodes[t[0]], sheet.nodes[t[1]], sheet.nodes[t[2]]}, surface, tree, *plane) < min_cover;
     });
     if (sheet.triangles.empty()) return no_sheet("nearly all of its outline is open");
     return largest_part(sheet);

@@ -15,14 +15,14 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uintmax_t largest_file = std::uintmax_t{512} << 20;
+constexpr std::uintmax_t max_file_bytes = std::uintmax_t{512} << 20;
 
 Result<std::string> read_text(const std::filesystem::path& file) {
     std::error_code problem;
     if (std::filesystem::is_directory(file, problem)) return Error{file.string(), "is a folder, not a scene"};
     const std::uintmax_t size = std::filesystem::file_size(file, problem);
     if (problem) return Error{file.string(), "can't be read: " + problem.message()};
-    if (size > largest_file) return Error{file.string(), "is larger than 512 MiB"};
+    if (size > max_file_bytes) return Error{file.string(), "is larger than 512 MiB"};
     std::string text(static_cast<std::size_t>(size), '\0');
     std::ifstream in(file, std::ios::binary);
     in.read(text.data(), static_cast<std::streamsize>(size));

@@ -47,7 +47,7 @@ DeformableSurface::DeformableSurface(const DeformableDefinition& definition)
 // Intersects the ray with one ball on each segment, where the ray is closest to it.
 std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radius,
                                     std::span<const std::uint32_t> broken, const Ray& ray) {
-    const auto& [origin, direction, most] = ray;
+    const auto& [origin, direction, max_distance] = ray;
     std::optional<SurfaceHit> nearest;
     for (std::uint32_t s = 0; s + 1 < positions.size(); ++s) {
         if (std::ranges::binary_search(broken, s)) continue;
@@ -61,7 +61,7 @@ std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radi
         const double beside = length_squared(center - origin) - ahead * ahead;
         if (beside > radius * radius) continue;
         const double distance = ahead - std::sqrt(radius * radius - beside);
-        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        if (distance < 0 || distance > max_distance || (nearest && distance >= nearest->distance)) continue;
         nearest = SurfaceHit{distance, normalized(origin + distance * direction - center, -direction)};
     }
     return nearest;
@@ -70,7 +70,7 @@ std::optional<SurfaceHit> meet_rope(std::span<const Vec3> positions, double radi
 // T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face: a solid's only from
 // outside, those of cloth from both sides.
 std::optional<SurfaceHit> DeformableSurface::meet(std::span<const Vec3> positions, const Ray& ray) const {
-    const auto& [origin, direction, most] = ray;
+    const auto& [origin, direction, max_distance] = ray;
     std::optional<SurfaceHit> nearest;
     for (const auto& face : faces_) {
         const Vec3 a = positions[face[0]];
@@ -83,7 +83,7 @@ std::optional<SurfaceHit> DeformableSurface::meet(std::span<const Vec3> position
         const double u = dot(from, p), v = dot(direction, q);
         if (u < 0 || v < 0 || u + v > facing) continue;
         const double distance = dot(across, q) / facing;
-        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        if (distance < 0 || distance > max_distance || (nearest && distance >= nearest->distance)) continue;
         nearest = SurfaceHit{distance, normalized(cross(along, across))};
     }
     return nearest;

@@ -15,8 +15,8 @@ namespace embody::scene {
 
 /// A ray of finite length.
 struct Ray {
-    Vec3 origin, direction;  ///< m; unit
-    double most = 0;         ///< m
+    Vec3 origin, direction;   ///< m; unit
+    double max_distance = 0;  ///< m
 };
 
 /// The nodes and faces of a deformable that are visible from outside.

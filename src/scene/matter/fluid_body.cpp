@@ -31,16 +31,16 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     const double cell = liquids.cell_size(made->matter_, bounds);
     bool is_own = cell == made->matter_.cell_size;
     if (!is_own) {
-        const std::size_t most = definition.particle_budget * Liquids::most_particles_ratio;
-        Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, most);
+        const std::size_t max_distance = definition.particle_budget * Liquids::max_particles_ratio;
+        Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, max_distance);
         // A liquid thinner than the other's particles would get more volume from them: it gets its own fluid.
-        constexpr double most_off = 1.08;  // ratio of cell sizes; 1.26 in volume
-        is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(most_off);
+        constexpr double max_cell_ratio = 1.08;  // ratio of cell sizes; 1.26 in volume
+        is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(max_cell_ratio);
         if (!is_own) filling = std::move(joined);
     }
     // The cells of a new fluid are chosen so that the particles have the liquid's volume.
-    constexpr double largest_cell = 1;  // m, limit of the physics
-    if (filling.value().cell_size > largest_cell)
+    constexpr double max_cell_size = 1;  // m, limit of the physics
+    if (filling.value().cell_size > max_cell_size)
         return Error{"attributes.particle_budget",
                      "is too small for so much liquid: its cells would be " +
                          std::to_string(static_cast<int>(std::ceil(filling.value().cell_size))) +
@@ -63,24 +63,24 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
 }
 
 FluidBody::~FluidBody() {
-    if (share_) liquids_.remove(share_);
+    if (part_) liquids_.remove(part_);
 }
 
 Result<void> FluidBody::put(const std::vector<Particle>& particles) {
     std::vector<Vec3> places;
     places.reserve(particles.size());
     for (const Particle& particle : particles) places.push_back(particle.position);
-    const Result<Liquids::Share*> share = liquids_.add(matter_, places);
-    if (!share.ok())
-        return Error{"shape", "holds no liquid: " + share.error().why,
+    const Result<Liquids::Part*> part = liquids_.add(matter_, places);
+    if (!part.ok())
+        return Error{"shape", "holds no liquid: " + part.error().why,
                      "place it outside of solid things, or make it larger"};
-    share_ = share.value();
-    share_->force = force_;
+    part_ = part.value();
+    part_->force = force_;
     if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
 
     // Particles in solids were left out, so that ids are no indices into `particles`, but the order is the same.
     std::size_t at = 0;
-    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+    return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         constexpr double same_place = 1e-4;
         while (at < particles.size() && length(particles[at].position - position) > same_place) ++at;
         if (at < particles.size()) velocity = particles[at++].velocity;
@@ -94,24 +94,24 @@ Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
     matter_ = liquid.matter;
     force_ = liquid.force;
     matter_.cell_size = cell_size;
-    if (share_) {
-        share_->force = force_;
-        if (Result<void> set = liquids_.set_matter(*share_, matter_); !set.ok()) return set;
+    if (part_) {
+        part_->force = force_;
+        if (Result<void> set = liquids_.set_matter(*part_, matter_); !set.ok()) return set;
     }
     return set_enabled(liquid.enabled);
 }
 
 std::vector<FluidBody::Particle> FluidBody::particles() const {
-    if (!share_) return kept_;
-    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    if (!part_) return kept_;
+    const FluidParticles all = world_.fluid_particles(part_->fluid);
     std::vector<Particle> own;
     own.reserve(count());
-    for (const std::uint32_t i : liquids_.particles_of(*share_))
+    for (const std::uint32_t i : liquids_.particles_of(*part_))
         own.push_back({all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])});
     return own;
 }
 
-std::size_t FluidBody::count() const { return share_ ? liquids_.particles_of(*share_).size() : kept_.size(); }
+std::size_t FluidBody::count() const { return part_ ? liquids_.particles_of(*part_).size() : kept_.size(); }
 
 void FluidBody::read(std::vector<Vec3>& positions) const {
     positions.clear();
@@ -126,8 +126,8 @@ double FluidBody::particle_mass() const {
 double FluidBody::radius() const { return std::cbrt(3 * particle_mass() / (4 * std::numbers::pi * matter_.density)); }
 
 SleepState FluidBody::state() const {
-    if (!share_) return SleepState::asleep;
-    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    if (!part_) return SleepState::asleep;
+    const FluidParticles all = world_.fluid_particles(part_->fluid);
     return all.is_asleep || all.is_frozen ? SleepState::asleep : SleepState::active;
 }
 
@@ -154,7 +154,7 @@ Bounds FluidBody::bounds() const {
 }
 
 // Casts a ray down from the lowest particle of each column of cells.
-std::optional<double> FluidBody::drop_distance(double most) const {
+std::optional<double> FluidBody::drop_distance(double max_distance) const {
     std::map<std::pair<int, int>, Vec3> lowest;
     for (const Particle& particle : particles()) {
         const Vec3 p = particle.position;
@@ -164,17 +164,17 @@ std::optional<double> FluidBody::drop_distance(double most) const {
         if (!is_new && p.y < found->second.y) found->second = p;
     }
     const double clearance = radius();
-    std::optional<double> least;
+    std::optional<double> min_distance;
     for (const auto& [column, place] : lowest) {
-        const auto hit = world_.cast_ray(place, {0, -1, 0}, most + clearance);
-        if (hit && (!least || hit->distance < *least)) least = hit->distance;
+        const auto hit = world_.cast_ray(place, {0, -1, 0}, max_distance + clearance);
+        if (hit && (!min_distance || hit->distance < *min_distance)) min_distance = hit->distance;
     }
-    if (least) *least = std::max(0.0, *least - clearance);
-    return least;
+    if (min_distance) *min_distance = std::max(0.0, *min_distance - clearance);
+    return min_distance;
 }
 
 // First hit with balls so large that neighbours at rest overlap.
-std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, double most) const {
+std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, double max_distance) const {
     const double reach = 1.5 * radius();
     const Bounds box = bounds();
     if (box.is_empty()) return {};
@@ -184,7 +184,7 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
         const double along = dot(to, direction), off = length_squared(to) - along * along;
         if (off > reach * reach) continue;
         const double distance = along - std::sqrt(reach * reach - off);
-        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        if (distance < 0 || distance > max_distance || (nearest && distance >= nearest->distance)) continue;
         nearest = SurfaceHit{distance, normalized(distance * direction - to)};
     }
     return nearest;
@@ -192,31 +192,31 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
 
 Result<void> FluidBody::move(const Transform& motion) {
     for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
-    if (!share_) return {};
+    if (!part_) return {};
     Result<void> moved =
-        world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
             position = transform_point(motion, position);
             velocity = {};
             return true;
         });
     if (!moved.ok()) return moved;
-    return liquids_.regroup(*share_);
+    return liquids_.regroup(*part_);
 }
 
 Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
     const Vec3 center = center_of_mass();
     for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
-    if (!share_) return {};
-    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+    if (!part_) return {};
+    return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         velocity = linear + cross(angular, position - center);
         return true;
     });
 }
 
 Result<void> FluidBody::apply_impulse(Vec3 impulse) {
-    if (!share_) return {};
+    if (!part_) return {};
     const Vec3 change = impulse / mass();
-    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
+    return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
         velocity += change;
         return true;
     });
@@ -225,14 +225,14 @@ Result<void> FluidBody::apply_impulse(Vec3 impulse) {
 Result<void> FluidBody::apply_force(Vec3 force) { return apply_impulse(world_.settings().time_step * force); }
 
 Result<void> FluidBody::set_enabled(bool enabled) {
-    if (enabled == (share_ != nullptr)) return {};
+    if (enabled == (part_ != nullptr)) return {};
     if (enabled) {
         if (Result<void> in = put(kept_); !in.ok()) return in;
         kept_.clear();
         return {};
     }
     kept_ = particles();
-    liquids_.remove(std::exchange(share_, nullptr));
+    liquids_.remove(std::exchange(part_, nullptr));
     return {};
 }
 

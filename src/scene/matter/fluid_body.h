@@ -22,13 +22,13 @@ public:
     [[nodiscard]] double radius() const override;  ///< of a ball with a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
     /// The fluid of the world that its particles belong to; null while it is disabled.
-    [[nodiscard]] physics::FluidHandle fluid() const { return share_ ? share_->fluid : physics::FluidHandle{}; }
+    [[nodiscard]] physics::FluidHandle fluid() const { return part_ ? part_->fluid : physics::FluidHandle{}; }
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
     [[nodiscard]] Bounds bounds() const override;
-    [[nodiscard]] std::optional<double> drop_distance(double most) const override;
-    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double most) const override;
+    [[nodiscard]] std::optional<double> drop_distance(double max_distance) const override;
+    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance) const override;
     /// Liquid flows through a hand: always null.
     [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
     [[nodiscard]] Vec3 linear_velocity() const override;
@@ -54,9 +54,9 @@ private:
     physics::World& world_;
     Liquids& liquids_;
     physics::FluidDefinition matter_;
-    Vec3 force_;                       ///< constant, N
-    Liquids::Share* share_ = nullptr;  ///< null while it is disabled
-    std::vector<Particle> kept_;       ///< state of the particles while it is disabled
+    Vec3 force_;                     ///< constant, N
+    Liquids::Part* part_ = nullptr;  ///< null while it is disabled
+    std::vector<Particle> kept_;     ///< state of the particles while it is disabled
 };
 
 /// Null for points that are no liquid, and for a null pointer.

@@ -12,7 +12,7 @@ namespace embody::scene {
 namespace {
 
 // Maximum number of lattice places: they take about a second.
-constexpr double most_places = 20'000'000;
+constexpr double max_places = 20'000'000;
 
 /// A lattice of `counts` places that fits the bounds.
 struct Lattice {
@@ -29,8 +29,8 @@ struct Lattice {
     [[nodiscard]] double size() const { return counts[0] * counts[1] * counts[2]; }
 };
 
-// Stops at more than `most` places.
-std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, std::size_t most) {
+// Stops at more than `max_count` places.
+std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, std::size_t max_count) {
     std::vector<Vec3> places;
     for (double y = 0; y < lattice.counts[1]; ++y) {
         for (double z = 0; z < lattice.counts[2]; ++z) {
@@ -39,7 +39,7 @@ std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, 
                 const Vec3 place = lattice.first + Vec3{x * s.x, y * s.y, z * s.z};
                 if (!region.holds_ball(place, 0)) continue;
                 places.push_back(place);
-                if (places.size() > most) return places;
+                if (places.size() > max_count) return places;
             }
         }
     }
@@ -48,20 +48,20 @@ std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, 
 
 }  // namespace
 
-Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t most) {
+Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t max_count) {
     const Result<FilledRegion> region = FilledRegion::of(shape);
     if (!region.ok()) return region.error();
     constexpr double coarser = 1.03, finer = 0.7;
     bool was_too_many = false;
     for (double step = cell_size / 2;;) {
         const Lattice lattice(region.value().bounds(), step);
-        if (lattice.size() > most_places) {
+        if (lattice.size() > max_places) {
             if (!was_too_many && step < cell_size / 2) break;
             step *= 1.25;
             continue;
         }
-        FluidFilling filling{places_in(region.value(), lattice, most), 0};
-        if (filling.places.size() > most) {
+        FluidFilling filling{places_in(region.value(), lattice, max_count), 0};
+        if (filling.places.size() > max_count) {
             was_too_many = true;
             step *= coarser;
         } else if (!filling.places.empty()) {

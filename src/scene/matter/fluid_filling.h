@@ -14,9 +14,9 @@ struct FluidFilling {
     double cell_size = 0;      ///< of the cells, m; a particle has an eighth of a cell's volume
 };
 
-/// Fills a shape with particles for cells of about this size (m), at most `most` particles: the cells are enlarged
+/// Fills a shape with particles for cells of about this size (m), at most `max_count` particles: the cells are enlarged
 /// where more would fit. The particles' volume is the shape's to the accuracy of a lattice. The error says why the
 /// shape has no inside, or that it is too flat.
-Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t most);
+Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t max_count);
 
 }  // namespace embody::scene

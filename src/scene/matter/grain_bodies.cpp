@@ -86,19 +86,19 @@ Bounds GrainBodies::bounds() const {
     return enlarged(bounds, radius_);
 }
 
-std::optional<double> GrainBodies::drop_distance(double most) const {
+std::optional<double> GrainBodies::drop_distance(double max_distance) const {
     std::vector<bool> is_own;
     for (const BodyHandle ball : balls_) {
         if (ball.index >= is_own.size()) is_own.resize(ball.index + 1);
         is_own[ball.index] = true;
     }
     const auto ignores = [&](BodyHandle other) { return other.index < is_own.size() && is_own[other.index]; };
-    std::optional<double> least;
+    std::optional<double> min_distance;
     for (const BodyHandle ball : balls_) {
-        const std::optional<double> drop = world_.drop_distance(ball, least.value_or(most), ignores);
-        if (drop && (!least || *drop < *least)) least = drop;
+        const std::optional<double> drop = world_.drop_distance(ball, min_distance.value_or(max_distance), ignores);
+        if (drop && (!min_distance || *drop < *min_distance)) min_distance = drop;
     }
-    return least;
+    return min_distance;
 }
 
 BodyHandle GrainBodies::hold(Vec3 position) {
@@ -125,16 +125,16 @@ Result<void> GrainBodies::set_velocity(Vec3 linear, Vec3 angular) {
 }
 
 Result<void> GrainBodies::apply_impulse(Vec3 impulse) {
-    const Vec3 share = impulse / static_cast<double>(balls_.size());
+    const Vec3 per_ball = impulse / static_cast<double>(balls_.size());
     for (const BodyHandle ball : balls_)
-        if (Result<void> pushed = world_.apply_impulse(ball, share); !pushed.ok()) return pushed;
+        if (Result<void> pushed = world_.apply_impulse(ball, per_ball); !pushed.ok()) return pushed;
     return {};
 }
 
 Result<void> GrainBodies::apply_force(Vec3 force) {
-    const Vec3 share = force / static_cast<double>(balls_.size());
+    const Vec3 per_ball = force / static_cast<double>(balls_.size());
     for (const BodyHandle ball : balls_)
-        if (Result<void> pushed = world_.apply_force(ball, share); !pushed.ok()) return pushed;
+        if (Result<void> pushed = world_.apply_force(ball, per_ball); !pushed.ok()) return pushed;
     return {};
 }
 

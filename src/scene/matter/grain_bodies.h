@@ -24,7 +24,7 @@ public:
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
     [[nodiscard]] Bounds bounds() const override;
-    [[nodiscard]] std::optional<double> drop_distance(double most) const override;
+    [[nodiscard]] std::optional<double> drop_distance(double max_distance) const override;
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     Result<void> set_definition(const PointsDefinition& definition) override;
     Result<void> move(const Transform& motion) override;

@@ -52,8 +52,8 @@ std::string note_of(const LiquidDefinition& liquid, const MovingPoints& points) 
            "it thicker)";
 }
 
-bool share_space(const MovingPoints& a, const MovingPoints& b) {
-    constexpr double cells_of_radius = 4, common_share = 0.05;
+bool are_overlapping(const MovingPoints& a, const MovingPoints& b) {
+    constexpr double cells_of_radius = 4, common_fraction = 0.05;
     const double edge = cells_of_radius * std::max(a.radius(), b.radius());
     if (!(edge > 0) || !overlaps(a.bounds(), b.bounds())) return false;
     std::vector<Vec3> points;
@@ -64,7 +64,7 @@ bool share_space(const MovingPoints& a, const MovingPoints& b) {
     std::vector<Place> common;
     std::ranges::set_intersection(of_a, of_b, std::back_inserter(common));
     const std::size_t fewer = std::min(of_a.size(), of_b.size());
-    return static_cast<double>(common.size()) > common_share * static_cast<double>(fewer);
+    return static_cast<double>(common.size()) > common_fraction * static_cast<double>(fewer);
 }
 
 }  // namespace embody::scene

@@ -11,6 +11,6 @@ namespace embody::scene {
 std::string note_of(const LiquidDefinition& liquid, const MovingPoints& points);
 
 /// Whether two liquids of different fluids, which do not interact, overlap.
-bool share_space(const MovingPoints& a, const MovingPoints& b);
+bool are_overlapping(const MovingPoints& a, const MovingPoints& b);
 
 }  // namespace embody::scene

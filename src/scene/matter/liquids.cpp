@@ -13,7 +13,7 @@ namespace {
 
 // The solver's grid spans all liquid of a fluid with a margin of about this many cells. Bodies of liquid so far apart
 // that the grid would have more cells do not use one fluid.
-constexpr double most_cells = 500'000, margin = 24;
+constexpr double max_cells = 500'000, margin = 24;
 
 bool is_same_matter(const FluidDefinition& a, const FluidDefinition& b) {
     return a.density == b.density && a.viscosity == b.viscosity && a.yield_stress == b.yield_stress &&
@@ -29,151 +29,152 @@ double cells_of(const Bounds& bounds, double cell) {
 
 }  // namespace
 
-Liquids::Shared* Liquids::to_join(const FluidDefinition& matter, const Bounds& bounds, double most,
-                                  FluidHandle except) {
-    for (Shared& shared : fluids_) {
+Liquids::SharedFluid* Liquids::to_join(const FluidDefinition& matter, const Bounds& bounds, double ratio_limit,
+                                       FluidHandle except) {
+    for (SharedFluid& shared : fluids_) {
         if (shared.fluid == except) continue;
         const FluidDefinition& other = *world_.fluid(shared.fluid);
         const double ratio = matter.cell_size / other.cell_size;
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
-        if (!is_same_matter(matter, other) || ratio > most || ratio < 1 / most || particles.is_frozen) continue;
+        if (!is_same_matter(matter, other) || ratio > ratio_limit || ratio < 1 / ratio_limit || particles.is_frozen)
+            continue;
         Bounds both = particles.bounds;
         both.add(bounds);
-        if (cells_of(both, other.cell_size) < most_cells) return &shared;
+        if (cells_of(both, other.cell_size) < max_cells) return &shared;
     }
     return nullptr;
 }
 
 double Liquids::cell_size(const FluidDefinition& matter, const Bounds& bounds) {
-    const Shared* shared = to_join(matter, bounds, most_ratio);
+    const SharedFluid* shared = to_join(matter, bounds, max_ratio);
     return shared ? world_.fluid(shared->fluid)->cell_size : matter.cell_size;
 }
 
-Result<Liquids::Share*> Liquids::add(const FluidDefinition& matter, std::span<const Vec3> places) {
+Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<const Vec3> places) {
     Bounds bounds;
     for (const Vec3 place : places) bounds.add(place);
-    auto share = std::make_unique<Share>();
-    Share* added = share.get();
-    if (const Shared* shared = to_join(matter, bounds, 1)) {
+    auto part = std::make_unique<Part>();
+    Part* added = part.get();
+    if (const SharedFluid* shared = to_join(matter, bounds, 1)) {
         const Result<physics::FluidIds> ids = world_.add_to_fluid(shared->fluid, places);
         if (!ids.ok()) return ids.error();
-        share->fluid = shared->fluid;
-        share->ids = ids.value();
+        part->fluid = shared->fluid;
+        part->ids = ids.value();
     } else {
         FluidDefinition definition = matter;
         definition.points.assign(places.begin(), places.end());
         const Result<FluidHandle> fluid = world_.create_fluid(definition);
         if (!fluid.ok()) return fluid.error();
         const auto count = static_cast<std::uint32_t>(world_.fluid_particles(fluid.value()).ids.size());
-        share->fluid = fluid.value();
-        share->ids = {0, count};
+        part->fluid = fluid.value();
+        part->ids = {0, count};
     }
-    put(std::move(share));
+    put(std::move(part));
     return added;
 }
 
-// Adds the share to its fluid's list; the newest ids are the largest.
-void Liquids::put(std::unique_ptr<Share> share) {
-    auto shared = find(share->fluid);
-    if (shared == fluids_.end()) shared = fluids_.insert(shared, Shared{share->fluid, {}, 0});
-    shared->shares.push_back(std::move(share));
+// Adds the part to its fluid's list; the newest ids are the largest.
+void Liquids::put(std::unique_ptr<Part> part) {
+    auto shared = find(part->fluid);
+    if (shared == fluids_.end()) shared = fluids_.insert(shared, SharedFluid{part->fluid, {}, 0});
+    shared->parts.push_back(std::move(part));
     shared->version = 0;
 }
 
-// Removes the share from its fluid's list, and the list with its last share.
-std::unique_ptr<Liquids::Share> Liquids::take(Share& share) {
-    const auto shared = find(share.fluid);
-    const auto at = std::ranges::find_if(shared->shares, [&](const auto& other) { return other.get() == &share; });
-    std::unique_ptr<Share> taken = std::move(*at);
-    shared->shares.erase(at);
-    if (!shared->shares.empty()) return taken;
+// Removes the part from its fluid's list, and the list with its last part.
+std::unique_ptr<Liquids::Part> Liquids::take(Part& part) {
+    const auto shared = find(part.fluid);
+    const auto at = std::ranges::find_if(shared->parts, [&](const auto& other) { return other.get() == &part; });
+    std::unique_ptr<Part> taken = std::move(*at);
+    shared->parts.erase(at);
+    if (!shared->parts.empty()) return taken;
     // The fluid is in the world, so that the world does not refuse.
-    (void)world_.destroy_fluid(share.fluid).ok();
+    (void)world_.destroy_fluid(part.fluid).ok();
     fluids_.erase(shared);
     return taken;
 }
 
-void Liquids::remove(Share* share) {
-    const std::unique_ptr<Share> taken = take(*share);
+void Liquids::remove(Part* part) {
+    const std::unique_ptr<Part> taken = take(*part);
     if (find(taken->fluid) == fluids_.end()) return;
     (void)world_.change_fluid(taken->fluid, taken->ids, [](std::uint32_t, Vec3&, Vec3&) { return false; }).ok();
 }
 
-// Finds the particles of all shares of a fluid in one pass over its particles.
-void Liquids::locate(Shared& shared) {
+// Finds the particles of all parts of a fluid in one pass over its particles.
+void Liquids::locate(SharedFluid& shared) {
     const FluidParticles particles = world_.fluid_particles(shared.fluid);
     if (shared.version == particles.version) return;
     constexpr std::uint32_t none = ~std::uint32_t{0};
-    for (const auto& share : shared.shares) share->places.assign(share->ids.last - share->ids.first, none);
+    for (const auto& part : shared.parts) part->places.assign(part->ids.last - part->ids.first, none);
     for (std::size_t i = 0; i < particles.ids.size(); ++i) {
         const std::uint32_t id = particles.ids[i];
-        const auto above = std::ranges::upper_bound(shared.shares, id, {}, [](const auto& s) { return s->ids.first; });
-        Share& share = **(above - 1);
-        share.places[id - share.ids.first] = static_cast<std::uint32_t>(i);
+        const auto above = std::ranges::upper_bound(shared.parts, id, {}, [](const auto& s) { return s->ids.first; });
+        Part& part = **(above - 1);
+        part.places[id - part.ids.first] = static_cast<std::uint32_t>(i);
     }
-    for (const auto& share : shared.shares) std::erase(share->places, none);
+    for (const auto& part : shared.parts) std::erase(part->places, none);
     shared.version = particles.version;
 }
 
-const std::vector<std::uint32_t>& Liquids::particles_of(const Share& share) {
-    locate(*find(share.fluid));
-    return share.places;
+const std::vector<std::uint32_t>& Liquids::particles_of(const Part& part) {
+    locate(*find(part.fluid));
+    return part.places;
 }
 
-Bounds Liquids::bounds_of(const Share& share) {
-    const FluidParticles particles = world_.fluid_particles(share.fluid);
+Bounds Liquids::bounds_of(const Part& part) {
+    const FluidParticles particles = world_.fluid_particles(part.fluid);
     Bounds bounds;
-    for (const std::uint32_t i : particles_of(share)) bounds.add(particles.origin + to_vec3(particles.positions[i]));
+    for (const std::uint32_t i : particles_of(part)) bounds.add(particles.origin + to_vec3(particles.positions[i]));
     return bounds;
 }
 
 // Moves the particles to another fluid, or to a new one.
-Result<void> Liquids::hand_over(Share& share, FluidHandle to) {
-    const Result<physics::FluidPart> part = world_.move_between_fluids(share.fluid, share.ids, to);
-    if (!part.ok()) return part.error();
-    std::unique_ptr<Share> taken = take(share);
-    taken->fluid = part.value().fluid;
-    taken->ids = part.value().ids;
+Result<void> Liquids::hand_over(Part& part, FluidHandle to) {
+    const Result<physics::FluidPart> moved = world_.move_between_fluids(part.fluid, part.ids, to);
+    if (!moved.ok()) return moved.error();
+    std::unique_ptr<Part> taken = take(part);
+    taken->fluid = moved.value().fluid;
+    taken->ids = moved.value().ids;
     put(std::move(taken));
     return {};
 }
 
-Result<void> Liquids::set_matter(Share& share, const FluidDefinition& matter) {
-    // The other shares of its fluid stay unchanged.
-    if (find(share.fluid)->shares.size() > 1) {
-        if (Result<void> alone = hand_over(share, {}); !alone.ok()) return alone;
+Result<void> Liquids::set_matter(Part& part, const FluidDefinition& matter) {
+    // The other parts of its fluid stay unchanged.
+    if (find(part.fluid)->parts.size() > 1) {
+        if (Result<void> alone = hand_over(part, {}); !alone.ok()) return alone;
     }
-    FluidDefinition changed = *world_.fluid(share.fluid);
+    FluidDefinition changed = *world_.fluid(part.fluid);
     changed.density = matter.density;
     changed.viscosity = matter.viscosity;
     changed.yield_stress = matter.yield_stress;
     changed.surface_tension = matter.surface_tension;
     changed.allow_sleep = matter.allow_sleep;
-    if (Result<void> set = world_.set_fluid(share.fluid, changed); !set.ok()) return set;
-    return regroup(share);
+    if (Result<void> set = world_.set_fluid(part.fluid, changed); !set.ok()) return set;
+    return regroup(part);
 }
 
-Result<void> Liquids::regroup(Share& share) {
-    const FluidParticles particles = world_.fluid_particles(share.fluid);
-    if (particles.is_frozen || particles_of(share).empty()) return {};
-    const bool is_alone = find(share.fluid)->shares.size() == 1;
-    if (!is_alone && cells_of(particles.bounds, particles.cell_size) < most_cells) return {};
-    const Shared* other = to_join(*world_.fluid(share.fluid), bounds_of(share), 1, share.fluid);
+Result<void> Liquids::regroup(Part& part) {
+    const FluidParticles particles = world_.fluid_particles(part.fluid);
+    if (particles.is_frozen || particles_of(part).empty()) return {};
+    const bool is_alone = find(part.fluid)->parts.size() == 1;
+    if (!is_alone && cells_of(particles.bounds, particles.cell_size) < max_cells) return {};
+    const SharedFluid* other = to_join(*world_.fluid(part.fluid), bounds_of(part), 1, part.fluid);
     if (is_alone && !other) return {};
-    return hand_over(share, other ? other->fluid : FluidHandle{});
+    return hand_over(part, other ? other->fluid : FluidHandle{});
 }
 
 void Liquids::push(double dt) {
-    for (const Shared& shared : fluids_) {
+    for (const SharedFluid& shared : fluids_) {
         const FluidDefinition& matter = *world_.fluid(shared.fluid);
         const double particle = matter.density * matter.cell_size * matter.cell_size * matter.cell_size / 8;
-        for (const auto& share : shared.shares) {
-            const std::size_t count = share->force == Vec3{} ? 0 : particles_of(*share).size();
+        for (const auto& part : shared.parts) {
+            const std::size_t count = part->force == Vec3{} ? 0 : particles_of(*part).size();
             if (count == 0 || world_.fluid_particles(shared.fluid).is_frozen) continue;
-            const Vec3 change = dt / (particle * static_cast<double>(count)) * share->force;
+            const Vec3 change = dt / (particle * static_cast<double>(count)) * part->force;
             // The fluid is in the world, so that the world does not refuse.
             (void)world_
-                .change_fluid(shared.fluid, share->ids,
+                .change_fluid(shared.fluid, part->ids,
                               [change](std::uint32_t, Vec3&, Vec3& velocity) {
                                   velocity += change;
                                   return true;
@@ -183,31 +184,31 @@ void Liquids::push(double dt) {
     }
 }
 
-void Liquids::part_far_ones() {
-    std::vector<Share*> far;
-    for (Shared& shared : fluids_) {
+void Liquids::separate_distant() {
+    std::vector<Part*> far;
+    for (SharedFluid& shared : fluids_) {
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
-        if (shared.shares.size() < 2 || particles.is_asleep || particles.is_frozen) continue;
+        if (shared.parts.size() < 2 || particles.is_asleep || particles.is_frozen) continue;
         const double all = cells_of(particles.bounds, particles.cell_size);
-        if (all < most_cells) continue;
-        for (const auto& share : shared.shares) {
+        if (all < max_cells) continue;
+        for (const auto& part : shared.parts) {
             Bounds others;
-            for (const auto& other : shared.shares) {
-                if (other != share) others.add(bounds_of(*other));
+            for (const auto& other : shared.parts) {
+                if (other != part) others.add(bounds_of(*other));
             }
             const double apart =
-                cells_of(bounds_of(*share), particles.cell_size) + cells_of(others, particles.cell_size);
+                cells_of(bounds_of(*part), particles.cell_size) + cells_of(others, particles.cell_size);
             if (apart > all / 2) continue;
-            far.push_back(share.get());
+            far.push_back(part.get());
             break;
         }
     }
     // The fluid is in the world and not frozen, so that the world does not refuse.
-    for (Share* share : far) (void)hand_over(*share, {}).ok();
+    for (Part* part : far) (void)hand_over(*part, {}).ok();
 }
 
-std::vector<Liquids::Shared>::iterator Liquids::find(FluidHandle fluid) {
-    return std::ranges::find_if(fluids_, [fluid](const Shared& shared) { return shared.fluid == fluid; });
+std::vector<Liquids::SharedFluid>::iterator Liquids::find(FluidHandle fluid) {
+    return std::ranges::find_if(fluids_, [fluid](const SharedFluid& shared) { return shared.fluid == fluid; });
 }
 
 }  // namespace embody::scene

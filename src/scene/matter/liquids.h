@@ -15,15 +15,15 @@ class Liquids {
 public:
     /// A solver has one cell size: bodies of liquid use one fluid if their own cell sizes differ by no more than this
     /// factor.
-    static constexpr double most_ratio = 1.6;
+    static constexpr double max_ratio = 1.6;
     /// Maximum factor on the number of particles of a body with the other's cells: the ratio cubed, rounded up.
-    static constexpr std::size_t most_particles_ratio = 5;
+    static constexpr std::size_t max_particles_ratio = 5;
 
     /// `world` outlives this.
     explicit Liquids(physics::World& world) : world_(world) {}
 
     /// The particles of one body of liquid in a fluid.
-    struct Share {
+    struct Part {
         physics::FluidHandle fluid;
         physics::FluidIds ids;
         std::vector<std::uint32_t> places;  ///< indices, see particles_of
@@ -33,40 +33,40 @@ public:
     /// own.
     [[nodiscard]] double cell_size(const physics::FluidDefinition& matter, const Bounds& bounds);
     /// Adds particles of that cell size at these places (m, world), at rest; places in solids are left out. `matter`
-    /// has neither volume nor velocity. The share is valid until remove().
-    Result<Share*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
+    /// has neither volume nor velocity. The part is valid until remove().
+    Result<Part*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
     /// Removes its particles from the world.
-    void remove(Share* share);
-    /// Indices of its particles in the world's fluid_particles(share.fluid), in the order of their ids. Valid until the
-    /// world or a share changes.
-    const std::vector<std::uint32_t>& particles_of(const Share& share);
+    void remove(Part* part);
+    /// Indices of its particles in the world's fluid_particles(part.fluid), in the order of their ids. Valid until the
+    /// world or a part changes.
+    const std::vector<std::uint32_t>& particles_of(const Part& part);
     /// Changes the matter; the cell size must be the same.
-    Result<void> set_matter(Share& share, const physics::FluidDefinition& matter);
+    Result<void> set_matter(Part& part, const physics::FluidDefinition& matter);
     /// Call after its particles were moved: it leaves a fluid that is too far away, or joins another one.
-    Result<void> regroup(Share& share);
-    /// Before a step of `dt` seconds: applies the shares' own forces.
+    Result<void> regroup(Part& part);
+    /// Before a step of `dt` seconds: applies the parts' own forces.
     void push(double dt);
-    /// After a step: separates shares that have moved far apart, since the grid of one fluid would have to span them
+    /// After a step: separates parts that have moved far apart, since the grid of one fluid would have to span them
     /// all.
-    void part_far_ones();
+    void separate_distant();
 
 private:
-    struct Shared {
+    struct SharedFluid {
         physics::FluidHandle fluid;
-        std::vector<std::unique_ptr<Share>> shares;  // by ids
-        std::uint64_t version = 0;                   // of the particles at the time of `places`
+        std::vector<std::unique_ptr<Part>> parts;  // by ids
+        std::uint64_t version = 0;                 // of the particles at the time of `places`
     };
-    [[nodiscard]] Shared* to_join(const physics::FluidDefinition& matter, const Bounds& bounds, double most_ratio,
-                                  physics::FluidHandle except = {});
-    [[nodiscard]] std::vector<Shared>::iterator find(physics::FluidHandle fluid);
-    void locate(Shared& shared);
-    [[nodiscard]] Bounds bounds_of(const Share& share);
-    Result<void> hand_over(Share& share, physics::FluidHandle to);
-    std::unique_ptr<Share> take(Share& share);
-    void put(std::unique_ptr<Share> share);
+    [[nodiscard]] SharedFluid* to_join(const physics::FluidDefinition& matter, const Bounds& bounds, double ratio_limit,
+                                       physics::FluidHandle except = {});
+    [[nodiscard]] std::vector<SharedFluid>::iterator find(physics::FluidHandle fluid);
+    void locate(SharedFluid& shared);
+    [[nodiscard]] Bounds bounds_of(const Part& part);
+    Result<void> hand_over(Part& part, physics::FluidHandle to);
+    std::unique_ptr<Part> take(Part& part);
+    void put(std::unique_ptr<Part> part);
 
     physics::World& world_;
-    std::vector<Shared> fluids_;
+    std::vector<SharedFluid> fluids_;
 };
 
 }  // namespace embody::scene

@@ -45,8 +45,8 @@ public:
     [[nodiscard]] virtual double mass() const = 0;  ///< kg
     /// Bounds of the drawn form.
     [[nodiscard]] virtual Bounds bounds() const = 0;
-    /// How far they can move down together until one touches another body, m; empty if none does within `most`.
-    [[nodiscard]] virtual std::optional<double> drop_distance(double most) const = 0;
+    /// How far they can move down together until one touches another body, m; empty if none does within `max_distance`.
+    [[nodiscard]] virtual std::optional<double> drop_distance(double max_distance) const = 0;
     /// Hit of a ray (unit direction) with a surface that is no body in the world; empty if all points are bodies.
     [[nodiscard]] virtual std::optional<SurfaceHit> cast_ray(Vec3, Vec3, double) const { return std::nullopt; }
     /// A body to pull at, at or near a place: one of the points, or a hand that is there until let_go(). Null where

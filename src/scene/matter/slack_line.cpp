@@ -16,7 +16,7 @@ struct Shape {
 };
 
 struct Span {
-    Vec3 from, way;
+    Vec3 from, chord;
     double length = 0;  // wanted, m
     std::size_t parts = 1;
 };
@@ -32,7 +32,7 @@ std::vector<Vec3> arc_of(const Span& span, const Shape& shape) {
     constexpr int steps = 2000, halvings = 60;
     std::vector<double> along(steps + 1, 0);  // path length along the arc
     const auto place = [&](double t, double depth) {
-        return span.from + t * span.way + depth * wave(shape, t) * shape.aside;
+        return span.from + t * span.chord + depth * wave(shape, t) * shape.aside;
     };
     const auto measure = [&](double depth) {
         for (int i = 1; i <= steps; ++i) {
@@ -61,15 +61,15 @@ std::vector<Vec3> arc_of(const Span& span, const Shape& shape) {
 
 // Candidates for the shape of an arc, in order of preference.
 std::vector<Shape> shapes_of(const Span& span, Vec3 down) {
-    const Vec3 ahead = normalized(span.way, {1, 0, 0});
+    const Vec3 ahead = normalized(span.chord, {1, 0, 0});
     const Vec3 across = std::fabs(ahead.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
     const Vec3 sag = normalized(down - dot(down, ahead) * ahead, normalized(cross(ahead, across), {0, 0, 1}));
     const Vec3 side = cross(ahead, sag);
     std::vector<Shape> shapes;
     for (const Vec3 aside : {sag, side, -side, normalized(sag + side), normalized(sag - side), -sag})
         shapes.push_back({aside});
-    constexpr int least_parts = 4;  // of a wave
-    for (int waves = 2; waves * least_parts <= static_cast<int>(span.parts); waves *= 2) {
+    constexpr int min_parts = 4;  // of a wave
+    for (int waves = 2; waves * min_parts <= static_cast<int>(span.parts); waves *= 2) {
         shapes.push_back({side, waves, true});
         shapes.push_back({sag, waves, true});
         shapes.push_back({-sag, waves, false});
@@ -77,10 +77,11 @@ std::vector<Shape> shapes_of(const Span& span, Vec3 down) {
     return shapes;
 }
 
-// Number of blocked places of the arc, counted up to `most`; its ends may touch the things that hold them.
-std::size_t count_blocked(const std::vector<Vec3>& arc, std::size_t most, const std::function<bool(Vec3)>& is_blocked) {
+// Number of blocked places of the arc, counted up to `max_count`; its ends may touch the things that hold them.
+std::size_t count_blocked(const std::vector<Vec3>& arc, std::size_t max_count,
+                          const std::function<bool(Vec3)>& is_blocked) {
     std::size_t blocked = 0;
-    for (std::size_t k = 1; k + 1 < arc.size() && blocked < most; ++k) {
+    for (std::size_t k = 1; k + 1 < arc.size() && blocked < max_count; ++k) {
         blocked += is_blocked(arc[k]) ? 1 : 0;
         if (k + 2 < arc.size()) blocked += is_blocked(0.5 * (arc[k] + arc[k + 1])) ? 1 : 0;
     }
@@ -128,12 +129,12 @@ std::vector<Vec3> slack_line(const SlackRope& rope, const std::function<bool(Vec
         if (last == first + 1) continue;
         const Span span{line[first], line[last] - line[first], length_between(rope, first, last), last - first};
         std::vector<Vec3> best;
-        std::size_t least = 2 * span.parts + 1;
+        std::size_t min_blocked = 2 * span.parts + 1;
         for (const Shape& shape : shapes_of(span, rope.down)) {
             const std::vector<Vec3> arc = arc_of(span, shape);
-            const std::size_t blocked = count_blocked(arc, least, is_blocked);
-            if (blocked >= least) continue;
-            least = blocked;
+            const std::size_t blocked = count_blocked(arc, min_blocked, is_blocked);
+            if (blocked >= min_blocked) continue;
+            min_blocked = blocked;
             best = arc;
             if (blocked == 0) break;
         }

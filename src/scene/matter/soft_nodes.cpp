@@ -19,7 +19,7 @@ namespace {
 
 // Radius around a place in which a hand holds nodes, as a fraction of the largest extent: of a solid, and of cloth or a
 // rope, which it pinches.
-constexpr double hand_share = 0.12, pinch_share = 0.03;
+constexpr double hand_fraction = 0.12, pinch_fraction = 0.03;
 constexpr double hand_radius = 1e-3;  // m; it collides with nothing
 
 }  // namespace
@@ -121,20 +121,20 @@ Bounds SoftNodes::bounds() const {
 }
 
 // Casts a ray down from each surface node.
-std::optional<double> SoftNodes::drop_distance(double most) const {
+std::optional<double> SoftNodes::drop_distance(double max_distance) const {
     const auto positions = world_.node_positions(handle_);
     const double clearance = definition().contact_radius;
-    std::optional<double> least;
+    std::optional<double> min_distance;
     for (const std::uint32_t node : surface_.nodes()) {
-        const auto hit = world_.cast_ray(positions[node], {0, -1, 0}, most + clearance);
-        if (hit && (!least || hit->distance < *least)) least = hit->distance;
+        const auto hit = world_.cast_ray(positions[node], {0, -1, 0}, max_distance + clearance);
+        if (hit && (!min_distance || hit->distance < *min_distance)) min_distance = hit->distance;
     }
-    if (least) *least = std::max(0.0, *least - clearance);
-    return least;
+    if (min_distance) *min_distance = std::max(0.0, *min_distance - clearance);
+    return min_distance;
 }
 
-std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, double most) const {
-    const Ray ray{origin, direction, most};
+std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, double max_distance) const {
+    const Ray ray{origin, direction, max_distance};
     const auto positions = world_.node_positions(handle_);
     if (surface_.has_faces()) return surface_.meet(positions, ray);
     return meet_rope(positions, definition().contact_radius, world_.broken_segments(handle_), ray);
@@ -147,7 +147,7 @@ BodyHandle SoftNodes::hold(Vec3 position) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::uint32_t node : surface_.nodes()) nearest = std::min(nearest, length(positions[node] - position));
     const bool is_solid = std::holds_alternative<physics::SoftSolid>(definition().matter);
-    const double reach = nearest + (is_solid ? hand_share : pinch_share) * std::max({size.x, size.y, size.z});
+    const double reach = nearest + (is_solid ? hand_fraction : pinch_fraction) * std::max({size.x, size.y, size.z});
 
     const auto shape = world_.create_shape(physics::SphereShape{hand_radius});
     if (!shape) return {};

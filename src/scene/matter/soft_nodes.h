@@ -43,8 +43,8 @@ public:
     [[nodiscard]] Vec3 center_of_mass() const override { return world_.center_of_mass(handle_); }
     [[nodiscard]] double mass() const override { return world_.mass(handle_); }
     [[nodiscard]] Bounds bounds() const override;
-    [[nodiscard]] std::optional<double> drop_distance(double most) const override;
-    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double most) const override;
+    [[nodiscard]] std::optional<double> drop_distance(double max_distance) const override;
+    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance) const override;
     /// A hand that holds the nodes around the place: a body without weight that collides with nothing.
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go() override;

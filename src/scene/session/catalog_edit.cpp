@@ -15,7 +15,7 @@ using nlohmann::json;
 namespace {
 
 /// An event names at most this many models; if more changed, it names none.
-constexpr std::size_t most_told_models = 1000;
+constexpr std::size_t max_told_models = 1000;
 
 std::string attribute_text(const std::vector<std::string>& names) {
     if (names.size() != 1) return std::to_string(names.size()) + " attributes";
@@ -46,7 +46,7 @@ void take_up(SessionState& state, const std::set<std::string>& keys) {
 void tell_models(SessionState& state, json event, const std::set<std::string>& keys, std::size_t models) {
     event["event"] = "catalog";
     event["models"] = models;
-    event["keys"] = keys.size() == models && models <= most_told_models ? json(keys) : json(nullptr);
+    event["keys"] = keys.size() == models && models <= max_told_models ? json(keys) : json(nullptr);
     state.tell(std::move(event));
 }
 

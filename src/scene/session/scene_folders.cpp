@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Maximum length of a file's name without ".json", bytes: file systems allow 255, and a draft's name is longer.
-constexpr std::size_t longest_stem = 200;
+constexpr std::size_t max_stem_bytes = 200;
 /// Number of bytes of a longer title in the name of its autosave.
 constexpr std::size_t kept_of_long_title = 150;
 const std::string autosave_prefix = "autosave/";
@@ -162,17 +162,17 @@ Result<fs::path> saved_file(const SessionOptions& options, const std::string& na
             return Error{"name", "begins with \"" + prefix + "\", which is not among the saved scenes",
                          "take another name"};
     fs::path file = file_in(options.saved_scenes, name);
-    if (file.stem().string().size() <= longest_stem) return file;
+    if (file.stem().string().size() <= max_stem_bytes) return file;
     return Error{
         "name", "is longer than a file's name may be",
-        "shorten it: at most " + std::to_string(longest_stem) + " letters; signs such as / and : count as three"};
+        "shorten it: at most " + std::to_string(max_stem_bytes) + " letters; signs such as / and : count as three"};
 }
 
 fs::path autosave_file(const SessionOptions& options, const std::string& name) {
     const fs::path folder = options.saved_scenes / "autosave";
     fs::path file = file_in(folder, name);
     const std::string stem = file.stem().string();
-    if (stem.size() <= longest_stem) return file;
+    if (stem.size() <= max_stem_bytes) return file;
     // A title may be of any length: the stem has its beginning, up to a whole character, and a part that tells it from
     // others. encoded() never makes a "%~".
     std::size_t kept = kept_of_long_title;

@@ -33,9 +33,9 @@ const std::map<std::string, const Command*>& command_table() {
 Error unknown_command(const std::string& name) {
     std::vector<std::string> known;
     for (const auto& [command, entry] : command_table()) known.push_back(command);
-    const std::string near = nearest_word(name, known);
+    const std::string nearest = nearest_word(name, known);
     return {"command", "\"" + name.substr(0, 80) + "\" is not a command",
-            near.empty() ? "" : "did you mean \"" + near + "\"?"};
+            nearest.empty() ? "" : "did you mean \"" + nearest + "\"?"};
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 /// Maximum number of actions told for one command or step: a hundred thousand steps with actions on every contact would
 /// fill the memory.
-constexpr std::size_t most_told_actions = 1000;
+constexpr std::size_t max_told_actions = 1000;
 
 // Message for each limit of a step.
 struct LimitText {
@@ -70,7 +70,7 @@ void SessionState::tell_step() {
     }
     for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
     for (const ActionFired& fired : simulation->fired()) {
-        if (++events.actions > most_told_actions) continue;
+        if (++events.actions > max_told_actions) continue;
         tell({{"event", "action"},
               {"name", fired.name},
               {"id", fired.id},

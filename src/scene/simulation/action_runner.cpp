@@ -130,11 +130,11 @@ std::size_t ActionRunner::signal(const std::string& key, const std::string& butt
     return started;
 }
 
-void ActionRunner::run_contacts(const Action& action, const Target& other, ContactEvent::Kind kind, double least_speed,
+void ActionRunner::run_contacts(const Action& action, const Target& other, ContactEvent::Kind kind, double min_speed,
                                 const std::vector<ContactEvent>& contacts) {
     for (const ContactEvent& contact : contacts) {
         if (is_done(action)) return;
-        if (contact.kind != kind || contact.approach_speed < least_speed) continue;
+        if (contact.kind != kind || contact.approach_speed < min_speed) continue;
         const auto a = static_cast<EntityIndex>(contact.user_data_a);
         const auto b = static_cast<EntityIndex>(contact.user_data_b);
         if (matches(action.sender, a) && matches(other, b)) {

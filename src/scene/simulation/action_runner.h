@@ -56,7 +56,7 @@ private:
     void run(const Action& action, EntityIndex sender, EntityIndex other);
     void run_on(const Action& action, EntityIndex sender, EntityIndex receiver);
     void run_timed(const Action& action, const AtTime& at, double time);
-    void run_contacts(const Action& action, const Target& other, physics::ContactEvent::Kind kind, double least_speed,
+    void run_contacts(const Action& action, const Target& other, physics::ContactEvent::Kind kind, double min_speed,
                       const std::vector<physics::ContactEvent>& contacts);
     void run_volume(const Action& action, const OnEnterVolume& enter);
     [[nodiscard]] bool is_done(const Action& action) { return action.once && progress_[action.id].has_fired; }

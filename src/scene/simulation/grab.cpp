@@ -10,9 +10,9 @@ namespace embody::scene {
 
 namespace {
 
-constexpr double frequency = 12;               // ω, rad/s: reaches the target in a third of a second
-constexpr double spin_damping = 8;             // 1/s
-constexpr double greatest_acceleration = 400;  // m/s²: limits the pull towards a far target
+constexpr double frequency = 12;          // ω, rad/s: reaches the target in a third of a second
+constexpr double spin_damping = 8;        // 1/s
+constexpr double max_acceleration = 400;  // m/s²: limits the pull towards a far target
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void pull(physics::World& world, const Grab& grab) {
     const double damping = 2 * frequency + stiffness * h;
     Vec3 wanted = (stiffness * (grab.target - point) - damping * velocity) / (1 + damping * h);
     const double size = length(wanted);
-    if (size > greatest_acceleration) wanted *= greatest_acceleration / size;
+    if (size > max_acceleration) wanted *= max_acceleration / size;
 
     // The force with that acceleration on this body at this lever arm.
     const double mass = world.mass(grab.body);

@@ -20,7 +20,7 @@ Result<ShapeHandle> SharedShapes::take(const GeometryKey& key,
     return shape;
 }
 
-void SharedShapes::give_back(const GeometryKey& key, ShapeHandle shape) {
+void SharedShapes::release(const GeometryKey& key, ShapeHandle shape) {
     if (shape.is_null()) return;
     if (const auto known = shapes_.find(key); key.is_shared() && known != shapes_.end()) {
         if (--known->second.users > 0) return;

@@ -19,7 +19,7 @@ public:
     Result<physics::ShapeHandle> take(const GeometryKey& key,
                                       const std::function<Result<physics::ShapeDefinition>()>& make);
     /// Call only after the body that used it is removed or has another. A null shape is ignored.
-    void give_back(const GeometryKey& key, physics::ShapeHandle shape);
+    void release(const GeometryKey& key, physics::ShapeHandle shape);
 
 private:
     struct Shared {

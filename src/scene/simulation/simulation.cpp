@@ -40,7 +40,7 @@ void add_notes_of_liquids(const std::vector<std::pair<std::string, const FluidBo
     for (std::size_t a = 0; a < liquids.size(); ++a) {
         for (std::size_t b = a + 1; b < liquids.size(); ++b) {
             const FluidBody &one = *liquids[a].second, &other = *liquids[b].second;
-            if (one.fluid() == other.fluid() || !share_space(one, other)) continue;
+            if (one.fluid() == other.fluid() || !are_overlapping(one, other)) continue;
             notes.push_back(liquids[b].first + " is in " + liquids[a].first +
                             ": liquids of other matter or other cells do not see each other.");
         }
@@ -105,7 +105,7 @@ const physics::StepReport& Simulation::step() {
     state.apply_timed_forces();
     state.liquids.push(state.world->settings().time_step);
     const physics::StepReport& report = state.world->step();
-    state.liquids.part_far_ones();
+    state.liquids.separate_distant();
     const auto sleeps = state.world->sleep_events();
     state.actions->after_step(contacts_between_entities(*state.world), {sleeps.begin(), sleeps.end()});
     return report;
@@ -190,19 +190,19 @@ Bounds Simulation::bounds(EntityIndex entity) const {
     return its ? its->bounds() : state_->world->bounds(body(entity));
 }
 
-std::optional<double> Simulation::drop_distance(EntityIndex entity, double most) const {
+std::optional<double> Simulation::drop_distance(EntityIndex entity, double max_distance) const {
     const MovingPoints* its = points(entity);
-    return its ? its->drop_distance(most) : state_->world->drop_distance(body(entity), most);
+    return its ? its->drop_distance(max_distance) : state_->world->drop_distance(body(entity), max_distance);
 }
 
-std::optional<Simulation::RayHit> Simulation::cast_ray(Vec3 origin, Vec3 direction, double most,
+std::optional<Simulation::RayHit> Simulation::cast_ray(Vec3 origin, Vec3 direction, double max_distance,
                                                        EntityIndex ignore) const {
     std::optional<RayHit> nearest;
-    if (const auto hit = state_->world->cast_ray(origin, direction, most, body(ignore)))
+    if (const auto hit = state_->world->cast_ray(origin, direction, max_distance, body(ignore)))
         nearest = RayHit{entity(hit->body), hit->position, hit->normal, hit->distance};
     for (const auto& [index, live] : state_->live) {
         if (!live.points || index == ignore) continue;
-        const auto hit = live.points->cast_ray(origin, direction, nearest ? nearest->distance : most);
+        const auto hit = live.points->cast_ray(origin, direction, nearest ? nearest->distance : max_distance);
         if (hit) nearest = RayHit{index, origin + hit->distance * direction, hit->normal, hit->distance};
     }
     return nearest;

@@ -76,15 +76,15 @@ public:
     [[nodiscard]] Transform pose(EntityIndex entity) const;
     /// World bounds of the collision shape; empty where there is none.
     [[nodiscard]] Bounds bounds(EntityIndex entity) const;
-    /// How far it can move down until it touches another entity, m; empty if it touches none within `most`.
-    [[nodiscard]] std::optional<double> drop_distance(EntityIndex entity, double most) const;
-    /// The first hit of a ray (unit direction) within `most`, m.
+    /// How far it can move down until it touches another entity, m; empty if it touches none within `max_distance`.
+    [[nodiscard]] std::optional<double> drop_distance(EntityIndex entity, double max_distance) const;
+    /// The first hit of a ray (unit direction) within `max_distance`, m.
     struct RayHit {
         EntityIndex entity = 0;
         Vec3 position, normal;
         double distance = 0;
     };
-    [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double most,
+    [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance,
                                                  EntityIndex ignore = 0) const;
     [[nodiscard]] bool is_movable(EntityIndex entity) const;
     /// For points the state of the most awake one.

@@ -9,9 +9,9 @@ namespace embody::scene {
 namespace {
 
 // Maximum number of spawned entities: an action that spawns at every contact would fill the memory.
-constexpr std::size_t most_spawned = 10'000;
+constexpr std::size_t max_spawned = 10'000;
 // Maximum number per step: an action that answers contacts by things that make contacts must not explode within a step.
-constexpr std::size_t most_spawned_a_step = 32;
+constexpr std::size_t max_spawned_per_step = 32;
 
 }  // namespace
 
@@ -46,9 +46,9 @@ Result<void> Simulation::State::change(EntityIndex index, const Effect& effect) 
 }
 
 Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spawn) {
-    if (next_spawned - last_document_index > most_spawned)
+    if (next_spawned - last_document_index > max_spawned)
         return Error{"spawn", "10000 entities were spawned in this run", "let the action fire less often"};
-    if (spawned.size() >= most_spawned_a_step) return Error{"spawn", "32 entities were spawned in this step"};
+    if (spawned.size() >= max_spawned_per_step) return Error{"spawn", "32 entities were spawned in this step"};
     const Entity* original = definition(like);
     if (const auto found = templates.find(like); found != templates.end()) original = &found->second;
     if (!original) return Error{"receiver", "entity " + std::to_string(like) + " is not there any more"};

@@ -68,7 +68,7 @@ Result<void> Simulation::State::put_body(LiveEntity& entity) {
     if (!body.ok()) return body.error();
     const Result<BodyHandle> handle = world->create_body(body.value());
     if (!handle.ok()) {
-        shapes.give_back(entity.shape_key, entity.shape);
+        shapes.release(entity.shape_key, entity.shape);
         return handle.error();
     }
     entity.body = handle.value();
@@ -97,7 +97,7 @@ void Simulation::State::take_out(LiveEntity& entity) {
     if (entity.body.is_null()) return;
     // The body is in the world, so that the world does not refuse.
     (void)world->destroy_body(entity.body).ok();
-    shapes.give_back(entity.shape_key, entity.shape);
+    shapes.release(entity.shape_key, entity.shape);
 }
 
 Result<void> Simulation::State::apply_settings() {
@@ -142,10 +142,10 @@ Result<void> Simulation::State::update_body(LiveEntity& before, LiveEntity& afte
         body.value().start_asleep = false;
     }
     if (const Result<void> changed = world->set_body(before.body, body.value()); !changed.ok()) {
-        shapes.give_back(after.shape_key, after.shape);
+        shapes.release(after.shape_key, after.shape);
         return changed.error();
     }
-    shapes.give_back(before.shape_key, before.shape);
+    shapes.release(before.shape_key, before.shape);
     return {};
 }
 
@@ -235,7 +235,7 @@ void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
     (void)world->destroy_bodies(handles).ok();
     for (const EntityIndex index : gone) {
         const auto found = live.find(index);
-        if (!found->second.body.is_null()) shapes.give_back(found->second.shape_key, found->second.shape);
+        if (!found->second.body.is_null()) shapes.release(found->second.shape_key, found->second.shape);
         holds.remove_pins(index, found->second.definition.pins);
         remarkable.erase(index);
         live.erase(found);

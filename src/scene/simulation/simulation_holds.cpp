@@ -27,8 +27,9 @@ std::vector<HeldNode> held_nodes(const Entity& entity, const physics::Deformable
     std::vector<HeldNode> held;
     for (const Pin& pin : entity.pins) {
         for (const std::uint32_t node : pinned_nodes(pin, deformable.nodes)) {
-            const bool is_near = length(deformable.nodes[node] - pin.position) <= pin.radius;
-            held.push_back({node, transform_point(deformable.pose, is_near ? deformable.nodes[node] : pin.position)});
+            const bool is_within_radius = length(deformable.nodes[node] - pin.position) <= pin.radius;
+            held.push_back(
+                {node, transform_point(deformable.pose, is_within_radius ? deformable.nodes[node] : pin.position)});
         }
     }
     return held;

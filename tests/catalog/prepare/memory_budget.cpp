@@ -19,17 +19,17 @@ TEST(MemoryBudget, IsAtMostHalfOfTheMachine) {
 TEST(MemoryBudget, AllWorkersTogetherStayWithinIt) {
     for (const std::size_t budget : {gibibyte / 4, gibibyte, 3 * gibibyte, 8 * gibibyte, 100 * gibibyte}) {
         for (const std::size_t wanted : {0, 1, 2, 7, 64}) {
-            const MemoryShares shares = share_memory(budget, wanted);
-            EXPECT_GE(shares.workers, 1u);
-            EXPECT_LE(shares.workers, std::max<std::size_t>(1, wanted));
-            EXPECT_LE(shares.workers * shares.each, budget);
-            EXPECT_EQ(shares.alone, budget);
-            EXPECT_TRUE(shares.each >= gibibyte || shares.workers == 1) << budget << " for " << wanted;
+            const WorkerMemory memory = divide_memory(budget, wanted);
+            EXPECT_GE(memory.workers, 1u);
+            EXPECT_LE(memory.workers, std::max<std::size_t>(1, wanted));
+            EXPECT_LE(memory.workers * memory.each, budget);
+            EXPECT_EQ(memory.alone, budget);
+            EXPECT_TRUE(memory.each >= gibibyte || memory.workers == 1) << budget << " for " << wanted;
         }
     }
     // 64 cores with 8 GiB: eight workers of 1 GiB.
-    EXPECT_EQ(share_memory(8 * gibibyte, 64).workers, 8u);
-    EXPECT_EQ(share_memory(100 * gibibyte, 2).each, 3 * gibibyte);
+    EXPECT_EQ(divide_memory(8 * gibibyte, 64).workers, 8u);
+    EXPECT_EQ(divide_memory(100 * gibibyte, 2).each, 3 * gibibyte);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(MeasureParts, OneForEachMaterialTheLargestFirst) {
         scene.meshes.back().material = 3 + i;
     }
     const auto many = measure_parts(scene);
-    ASSERT_EQ(many.size(), most_parts);
+    ASSERT_EQ(many.size(), max_parts);
     EXPECT_EQ(many.back().material, "");
     EXPECT_NEAR(many.back().form.shell.volume, 2 * (102 - 31), 1e-4);
 }

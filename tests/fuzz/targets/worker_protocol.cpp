@@ -37,7 +37,7 @@ void read_frames(std::span<const std::uint8_t> bytes) {
     while (bytes.size() >= catalog::frame_header_size) {
         const auto header = catalog::read_frame_header(bytes);
         if (!header) return fuzz::require(!header.error().why.empty(), "a refusal says the reason");
-        fuzz::require(header->payload_size <= catalog::largest_payload, "no frame is larger than is allowed");
+        fuzz::require(header->payload_size <= catalog::max_payload_bytes, "no frame is larger than is allowed");
         const std::size_t whole = catalog::frame_header_size + header->payload_size + catalog::frame_hash_size;
         if (whole > bytes.size()) {
             (void)catalog::payload_of(bytes);

@@ -152,7 +152,7 @@ TEST(FillWithTetrahedra, OpenTurnedAndOverlappingSurfacesAreFilled) {
     expect_sound(box);
     EXPECT_EQ(box.method, VolumeMethod::winding_number);
     EXPECT_NEAR(volume(box.mesh), 0.36, 0.06);
-    EXPECT_NEAR(box.volume_share, 1, 0.05);
+    EXPECT_NEAR(box.volume_fraction, 1, 0.05);
 
     // Two boxes that share a third: the shared part counts once, and the walls in the middle leave no trace.
     TriangleMesh pair = make_box({0.3, 0.2, 0.2}, {-0.2, 0, 0});
@@ -202,10 +202,10 @@ TEST(FillWithTetrahedra, WhatTheCellsMissIsTold) {
     append(mesh, make_box({1.5, 0.02, 0.02}, {1.6, 0, 0}));
     const TetrahedralFilling coarse = filled(mesh, {.cell = 0.1});
     expect_sound(coarse);
-    EXPECT_LT(coarse.volume_share, 0.95);
+    EXPECT_LT(coarse.volume_fraction, 0.95);
     const TetrahedralFilling fine = filled(mesh, {.cell = 0.02});
     expect_sound(fine);
-    EXPECT_GT(fine.volume_share, 0.96);
+    EXPECT_GT(fine.volume_fraction, 0.96);
 }
 
 TEST(FillWithTetrahedra, RefusesWhatCannotBeFilled) {

@@ -74,9 +74,9 @@ Result<Document> document_from_json(const json& value) {
     FieldReader reader(value, "", error);
     if (!is_format(reader)) return *error;
     read_fields<Heading>(reader, document);
-    if (const auto list = value.find("entities"); list != value.end() && list->size() > most_entities)
+    if (const auto list = value.find("entities"); list != value.end() && list->size() > max_entities)
         return Error{"entities",
-                     "are " + std::to_string(list->size()) + ", more than the " + std::to_string(most_entities) +
+                     "are " + std::to_string(list->size()) + ", more than the " + std::to_string(max_entities) +
                          " that a scene can have",
                      "split the scene"};
     // Entities first: joints name them.

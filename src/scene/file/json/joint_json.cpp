@@ -67,10 +67,10 @@ void put_at(FieldReader& reader, const Anchor& anchor, SceneJoint& joint, const 
     // Checked here, since physics sees only the frames.
     if (const Result<void> in_range = check_vector("anchor", *anchor.point, largest_coordinate, "m"); !in_range)
         return reader.refuse(document_field(in_range.error().where), in_range.error().why);
-    const auto is_near = [](const Transform& frame) {
+    const auto is_in_range = [](const Transform& frame) {
         return check_vector("", frame.position, largest_coordinate).ok();
     };
-    if (!is_near(joint.definition.frame_a) || !is_near(joint.definition.frame_b))
+    if (!is_in_range(joint.definition.frame_a) || !is_in_range(joint.definition.frame_b))
         reader.refuse("anchor", "is more than 1e9 m away from an entity that it holds",
                       "move the anchor or the entities");
 }

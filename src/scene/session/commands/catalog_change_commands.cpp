@@ -21,12 +21,12 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t most_keys = 10'000;
-constexpr std::size_t most_name_bytes = 160;
+constexpr std::size_t max_keys = 10'000;
+constexpr std::size_t max_name_bytes = 160;
 /// Maximum number of changes in one answer with the history: some megabytes.
-constexpr std::size_t most_told_changes = 20'000;
+constexpr std::size_t max_told_changes = 20'000;
 /// Number of models that a preview names; the history has all.
-constexpr std::size_t most_listed = 20;
+constexpr std::size_t max_listed = 20;
 
 // Reading
 // --------------------------------------------------------------------------------------------------------------
@@ -34,7 +34,7 @@ constexpr std::size_t most_listed = 20;
 Result<std::vector<std::int64_t>> ids_of(const Catalog& catalog, const json& keys, FieldReader& reader) {
     const std::string where = reader.path("keys");
     if (!read_array(keys, where, reader.error())) return *reader.error();
-    if (keys.empty() || keys.size() > most_keys)
+    if (keys.empty() || keys.size() > max_keys)
         return Error{where, "must name 1 … 10000 models", "a search or a category can mean more"};
     std::vector<std::int64_t> ids;
     std::set<std::int64_t> known;
@@ -111,9 +111,9 @@ json affected_entities(const SessionState& state, const ChangeReport& report) {
 
 json report_json(const SessionState& state, const ChangeReport& report, bool dry_run) {
     json models = json::array(), refused = json::array();
-    for (std::size_t i = 0; i < report.models.size() && i < most_listed; ++i)
+    for (std::size_t i = 0; i < report.models.size() && i < max_listed; ++i)
         models.push_back({{"key", report.models[i].key}, {"name", report.models[i].name}});
-    for (std::size_t i = 0; i < report.refused.size() && i < most_listed; ++i) {
+    for (std::size_t i = 0; i < report.refused.size() && i < max_listed; ++i) {
         const catalog::RefusedChange& one = report.refused[i];
         refused.push_back({{"key", one.key}, {"name", one.name}, {"attribute", one.attribute}, {"why", one.why}});
     }
@@ -176,8 +176,8 @@ Result<json> set_name(SessionState& state, const json& params) {
     if (std::any_of(name.begin(), name.end(), is_control)) return Error{"name", "must be one line of text"};
     name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
     name.erase(name.find_last_not_of(' ') + 1);
-    if (name.size() > most_name_bytes)
-        return Error{"name", "is longer than " + std::to_string(most_name_bytes) + " bytes", "shorten it"};
+    if (name.size() > max_name_bytes)
+        return Error{"name", "is longer than " + std::to_string(max_name_bytes) + " bytes", "shorten it"};
     if (name.empty())
         state.client_names.erase(state.client);
     else
@@ -227,8 +227,8 @@ Result<json> history(SessionState& state, const json& params) {
     reader.whole("changes", query.changes, 1, 1000);
     if (!reader.finish()) return *error;
     const auto told = static_cast<std::size_t>(query.limit) * static_cast<std::size_t>(query.changes);
-    if (told > most_told_changes) {
-        return Error{"limit", "times changes must be at most " + std::to_string(most_told_changes),
+    if (told > max_told_changes) {
+        return Error{"limit", "times changes must be at most " + std::to_string(max_told_changes),
                      "ask for the older ones with before"};
     }
     query.before = before;

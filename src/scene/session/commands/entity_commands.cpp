@@ -31,8 +31,8 @@ Result<void> check_room(const Document& document, std::size_t count) {
         return Error{
             "entity", "no index is left",
             "give the entity with the highest index a lower one in the scene file, and take next_index out of it"};
-    if (document.entities.size() + count <= most_entities) return {};
-    return Error{"entity", "a scene can have " + std::to_string(most_entities) + " entities", "delete some first"};
+    if (document.entities.size() + count <= max_entities) return {};
+    return Error{"entity", "a scene can have " + std::to_string(max_entities) + " entities", "delete some first"};
 }
 
 Result<json> add(SessionState& state, const json& params) {

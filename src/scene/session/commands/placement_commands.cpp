@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double farthest = 1e4;        // m, of a pointer's ray
+constexpr double max_ray_length = 1e4;  // m, of a pointer's ray
 constexpr double clearance = 1e-4;      // m, between a thing and the surface that it is placed on
 constexpr double wall_gap = 0.005;      // m, before a wall: closer, it would count as touching on the way down
 constexpr double steepest_floor = 0.5;  // cosine: a surface up to 60° steep counts as a floor
@@ -57,7 +57,7 @@ struct Surface {
 };
 
 Surface find_surface(const Simulation& simulation, Vec3 origin, Vec3 direction) {
-    if (const auto hit = simulation.cast_ray(origin, direction, farthest)) return {hit->position, hit->normal};
+    if (const auto hit = simulation.cast_ray(origin, direction, max_ray_length)) return {hit->position, hit->normal};
     const double to_ground = direction.y < -1e-3 ? -origin.y / direction.y : -1;
     if (to_ground > 0 && to_ground < 100) return {origin + direction * to_ground};
     return {origin + direction * 5};
@@ -112,7 +112,7 @@ Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 o
 
     // A thing whose placement is the floor stands in front of the wall.
     probe->move_to(pose);
-    const std::optional<double> drop = state.simulation->world().drop_distance(probe->body(), farthest);
+    const std::optional<double> drop = state.simulation->world().drop_distance(probe->body(), max_ray_length);
     if (drop && *drop > 1e-6) pose.position.y -= std::max(0.0, *drop - clearance);
     return pose;
 }
@@ -135,7 +135,7 @@ Result<json> drop_to_floor(SessionState& state, const json& params) {
     for (const EntityIndex index : indices) {
         if (!simulation.contains(index)) continue;
         Transform pose = simulation.pose(index);
-        const std::optional<double> drop = simulation.drop_distance(index, farthest);
+        const std::optional<double> drop = simulation.drop_distance(index, max_ray_length);
         if (!drop || *drop <= clearance) continue;
         pose.position.y -= *drop - clearance;
         if (Result<void> moved = simulation.set_pose(index, pose); !moved.ok()) return moved.error();
@@ -156,7 +156,7 @@ Result<json> pick(SessionState& state, const json& params) {
     if (length(direction) < 1e-9) return Error{"direction", "must not be zero"};
 
     const Simulation& simulation = *state.simulation;
-    const auto hit = simulation.cast_ray(origin, normalized(direction), farthest, ignored);
+    const auto hit = simulation.cast_ray(origin, normalized(direction), max_ray_length, ignored);
     if (!hit) return json{{"hit", nullptr}};
     return json{{"hit",
                  {{"index", hit->entity},

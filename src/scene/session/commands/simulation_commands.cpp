@@ -9,7 +9,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uint32_t most_steps = 100'000;  // of one command: more would take minutes
+constexpr std::uint32_t max_steps = 100'000;  // of one command: more would take minutes
 
 Result<void> read_nothing(const json& params) {
     std::optional<Error> error;
@@ -41,7 +41,7 @@ Result<json> step(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
     std::uint32_t count = 1;
-    reader.whole("count", count, 1, most_steps);
+    reader.whole("count", count, 1, max_steps);
     if (!reader.finish()) return *error;
     if (Result<void> ready = leave_stop(state); !ready.ok()) return ready.error();
     state.play_state = PlayState::paused;
