@@ -112,18 +112,18 @@ std::string text_of(const std::vector<Token>& tokens, const NounOccurrence& noun
 
 // The same order as for phrases: plain nouns first, then the first part of the name, in it the last noun, of these the
 // longest.
-bool says_more(const NounOccurrence& a, const NounOccurrence& b) {
+bool is_preferred(const NounOccurrence& a, const NounOccurrence& b) {
     if (a.is_plain != b.is_plain) return a.is_plain;
     if (a.segment != b.segment) return a.segment < b.segment;
     if (a.end != b.end) return a.end > b.end;
     return a.end - a.first > b.end - b.first;
 }
 
-// The first noun of the text, in the order of says_more(), that leads to a category.
+// The first noun of the text, in the order of is_preferred(), that leads to a category.
 std::optional<ReadNoun> read_noun(const Taxonomy::Data& data, const std::vector<Token>& tokens,
                                   const Surroundings& surroundings, bool is_name) {
     std::vector<NounOccurrence> nouns = nouns_of(data, tokens);
-    std::ranges::stable_sort(nouns, says_more);
+    std::ranges::stable_sort(nouns, is_preferred);
     for (const NounOccurrence& noun : nouns) {
         auto readings = is_name ? readings_of(data, noun.lemma, surroundings.beside(tokens, noun))
                                 : readings_of(data, noun.lemma, surroundings);
@@ -194,10 +194,10 @@ OtherMeanings other_meanings(const Taxonomy::Data& data, const std::vector<Token
 
 // Adds meanings that a person should know of, with less confidence than the taxonomy's; the source of the first
 // candidate names them.
-void tell_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others, std::vector<Candidate>& found) {
-    constexpr double worth_telling = 0.05;  // odds
+void add_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others, std::vector<Candidate>& found) {
+    constexpr double min_odds = 0.05;  // odds
     for (std::size_t i = 0; i < others.odds.size() && i < 3; ++i) {
-        if (others.odds[i] < worth_telling) continue;
+        if (others.odds[i] < min_odds) continue;
         Candidate other = candidate_of(data, name_trust, others.read, i);
         other.confidence = name_trust.phrase * others.odds[i] / (1 + others.odds[i]);
         other.reckoning = "another meaning of the word, less usual for a model";
@@ -208,8 +208,8 @@ void tell_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others
 }
 
 // A "toy lawn mower" is a toy, unless the taxonomy has a phrase for exactly that.
-std::optional<Candidate> ask_for_toy(const Taxonomy::Data& data, const std::vector<Token>& tokens,
-                                     const PhraseMatch& phrase) {
+std::optional<Candidate> find_toy(const Taxonomy::Data& data, const std::vector<Token>& tokens,
+                                  const PhraseMatch& phrase) {
     const CategoryData* toy = data.category("toy");
     const CategoryData& category = data.categories[phrase.entry];
     if (toy == nullptr || category.domain == toy->domain) return std::nullopt;
@@ -230,7 +230,8 @@ std::optional<Candidate> ask_for_toy(const Taxonomy::Data& data, const std::vect
 
 // Candidates from the name: the taxonomy's phrase, or a noun that the taxonomy does not have; the other one follows
 // with less confidence.
-std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view name, const Surroundings& surroundings) {
+std::vector<Candidate> candidates_from_name(const Taxonomy::Data& data, std::string_view name,
+                                            const Surroundings& surroundings) {
     const std::vector<Token> tokens = tokens_of(name);
     const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, name);
     const auto read = read_noun(data, tokens, surroundings, true);
@@ -242,25 +243,25 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
         }
         return found;
     }
-    if (auto toy = ask_for_toy(data, tokens, *phrase)) return {std::move(*toy)};
+    if (auto toy = find_toy(data, tokens, *phrase)) return {std::move(*toy)};
 
     found.push_back(candidate_of(data, name_trust, *phrase));
-    const auto yield_to = [&](const ReadNoun& other, const char* why) {
+    const auto overrule_by = [&](const ReadNoun& other, const char* why) {
         found.front().confidence *= overruled;
         found.front().reckoning += why;
         found.push_back(candidate_of(data, name_trust, other, 0));
     };
     if (read && noun_overrules(data, tokens, *phrase, *read)) {
-        yield_to(*read, ", which another noun of the name overrules");
+        overrule_by(*read, ", which another noun of the name overrules");
         return found;
     }
     // A "bat" beside the tag "animal", a "crane" as large as a house: tags and size may show that the other meaning is
     // right.
     const OtherMeanings others = other_meanings(data, tokens, *phrase, surroundings);
     if (surroundings.tell() && !others.odds.empty() && others.odds.front() > 1) {
-        yield_to(others.read, ", which what else is known speaks against");
+        overrule_by(others.read, ", which what else is known speaks against");
     } else {
-        tell_other_meanings(data, others, found);
+        add_other_meanings(data, others, found);
     }
     return found;
 }
@@ -276,7 +277,7 @@ bool is_imitation(const std::string& phrase) {
 
 // A tag that has the name's own phrase with more words before it ("toy cup" beside the name "cup"), or that says that
 // the thing is an imitation ("toy fruit" beside "banana"), says more exactly what the name means.
-void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found) {
+void prefer_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found) {
     if (found.empty() || found.front().phrase.empty()) return;
     const Candidate named = found.front();
     for (const std::string& tag : facts.tags) {
@@ -294,8 +295,8 @@ void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, st
 
 // A stated size that such things never have speaks against the words: a man of 7 cm, a swimming pool in a box. Up to a
 // factor 2 outside the usual size changes nothing. Only candidates from `first` on are changed.
-void doubt_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found,
-                         std::size_t first) {
+void penalize_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found,
+                            std::size_t first) {
     constexpr double tolerated = 0.7, strength = 1.5, min_factor = 0.05;
     const double largest = largest_extent(facts);
     if (!facts.size_is_stated || largest <= 0) return;
@@ -308,15 +309,15 @@ void doubt_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, st
     }
 }
 
-void doubt_long_name(std::vector<Candidate>& found) {
+void penalize_long_name(std::vector<Candidate>& found) {
     for (Candidate& candidate : found) {
         candidate.confidence *= trust_in_long;
         candidate.reckoning += "; the name is long, a sales text perhaps";
     }
 }
 
-void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view text, const Surroundings& surroundings,
-              std::vector<Candidate>& found) {
+void add_candidate_from_text(const Taxonomy::Data& data, const Trust& trust, std::string_view text,
+                             const Surroundings& surroundings, std::vector<Candidate>& found) {
     const std::vector<Token> tokens = tokens_of(text);
     const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, text);
     const bool is_all = phrase && phrase->first == 0 && phrase->end == tokens.size();
@@ -329,17 +330,17 @@ void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view t
 }
 
 // Names of the parts' materials say what the parts are made of, and sometimes what they are parts of: "lamp_shade".
-void ask_parts(const Taxonomy::Data& data, const ModelFacts& facts, const Surroundings& surroundings,
-               std::vector<Candidate>& found) {
+void add_candidates_from_parts(const Taxonomy::Data& data, const ModelFacts& facts, const Surroundings& surroundings,
+                               std::vector<Candidate>& found) {
     constexpr std::size_t parts_asked = 6;
     for (std::size_t i = 0; i < facts.material_names.size() && i < parts_asked; ++i) {
         const std::string& name = facts.material_names[i];
         if (match_phrase(data.material_phrases, data.longest_phrase, name)) continue;
-        ask_text(data, part_trust, name, surroundings, found);
+        add_candidate_from_text(data, part_trust, name, surroundings, found);
     }
 }
 
-void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vector<Candidate>& found) {
+void add_candidate_from_catalogue(const Taxonomy::Data& data, const std::string& name, std::vector<Candidate>& found) {
     const auto usual = data.by_catalogue.find(stems_of(name));
     if (usual == data.by_catalogue.end()) return;
     const CategoryData& category = data.categories[usual->second];
@@ -403,12 +404,12 @@ std::string without_words_of_tools(const std::string& name) {
 
 // Candidates from the name, else from the name with its compounds split, with less confidence since the split is a
 // guess.
-std::vector<Candidate> ask_name_and_compounds(const Taxonomy::Data& data, const std::string& name,
-                                              const Surroundings& surroundings) {
-    std::vector<Candidate> found = ask_name(data, name, surroundings);
+std::vector<Candidate> candidates_from_name_or_compounds(const Taxonomy::Data& data, const std::string& name,
+                                                         const Surroundings& surroundings) {
+    std::vector<Candidate> found = candidates_from_name(data, name, surroundings);
     for (const bool only_end : {false, true}) {
         if (!found.empty()) break;
-        found = ask_name(data, with_compounds_split(data, tokens_of(name), only_end), surroundings);
+        found = candidates_from_name(data, with_compounds_split(data, tokens_of(name), only_end), surroundings);
         for (Candidate& candidate : found) {
             candidate.confidence *= only_end ? trust_in_ending : trust_in_compound;
             candidate.reckoning += only_end ? "; the end of an unknown word" : "; a word taken apart";
@@ -476,25 +477,26 @@ bool material_by_words(const Taxonomy::Data& data, const std::string& where, std
 
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const Surroundings surroundings(data, facts);
-    std::vector<Candidate> found = ask_name_and_compounds(data, without_words_of_tools(facts.name), surroundings);
-    if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
+    std::vector<Candidate> found =
+        candidates_from_name_or_compounds(data, without_words_of_tools(facts.name), surroundings);
+    if (tokens_of(facts.name).size() >= long_name) penalize_long_name(found);
 
-    ask_more_exact_tags(data, facts, found);
+    prefer_more_exact_tags(data, facts, found);
     const std::size_t from_name = found.size();
-    doubt_unusual_sizes(data, facts, found, 0);
+    penalize_unusual_sizes(data, facts, found, 0);
 
     // A collection's description was written by somebody who knew what its names mean; the name may still be more
     // exact.
     if (!facts.stated_thing.empty()) {
-        ask_text(data, collection_trust, facts.stated_thing, surroundings, found);
+        add_candidate_from_text(data, collection_trust, facts.stated_thing, surroundings, found);
         support_each_other(data, found);
     } else if (found.empty() || found.front().confidence < name_trust.phrase) {
-        for (const std::string& tag : facts.tags) ask_text(data, tag_trust, tag, surroundings, found);
-        ask_text(data, folder_trust, facts.folder, surroundings, found);
-        ask_catalogue(data, facts.catalogue_category, found);
-        ask_text(data, category_trust, facts.catalogue_category, surroundings, found);
-        if (found.empty()) ask_parts(data, facts, surroundings, found);
-        doubt_unusual_sizes(data, facts, found, from_name);
+        for (const std::string& tag : facts.tags) add_candidate_from_text(data, tag_trust, tag, surroundings, found);
+        add_candidate_from_text(data, folder_trust, facts.folder, surroundings, found);
+        add_candidate_from_catalogue(data, facts.catalogue_category, found);
+        add_candidate_from_text(data, category_trust, facts.catalogue_category, surroundings, found);
+        if (found.empty()) add_candidates_from_parts(data, facts, surroundings, found);
+        penalize_unusual_sizes(data, facts, found, from_name);
         support_each_other(data, found);
     }
     if (found.empty())
@@ -510,8 +512,8 @@ double spread_of_steps(std::size_t steps) { return 0.25 * std::sqrt(static_cast<
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what) {
     const MaterialData* usual = data.material(what.category->material);
     MaterialChoice result{usual, "usual for " + what.category->name, what.level};
-    const auto& said_by = what.category->said_by;
-    if (const auto file = said_by.find("material"); file != said_by.end())
+    const auto& set_by_file = what.category->set_by_file;
+    if (const auto file = set_by_file.find("material"); file != set_by_file.end())
         result.source += ", says your " + file->second;
     // Words that name the thing do not say its material: a "paper towel holder" is not made of paper.
     if (material_by_words(data, "name", without_phrase(facts.name, what.phrase), result)) return result;

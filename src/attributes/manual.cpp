@@ -102,7 +102,7 @@ void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, Physi
 }
 
 // Takes valid entries only, each at level `manual`, whatever its own level was.
-AttributeSet lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual) {
+AttributeSet override_by(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual) {
     AttributeSet set = automatic;
     for (AttributeEntry entry : manual) {
         if (!validate(entry.name, entry.value)) continue;
@@ -135,7 +135,7 @@ void update_material(AttributeSet& set, const Taxonomy& taxonomy) {
 
 AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic,
                          const std::vector<AttributeEntry>& manual, const ModelFacts& facts) {
-    AttributeSet set = lay_over(automatic, manual);
+    AttributeSet set = override_by(automatic, manual);
     complete_for_kind(set);
     const Form form = form_of(facts.geometry, {0.5, 0.5, 0.5});
     const double mass_before = automatic.number("mass", set.number("mass", 1));

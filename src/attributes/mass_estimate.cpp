@@ -98,10 +98,10 @@ struct Doubt {
     std::string reasons;
 
     void add(double spread, const char* reason, double seen = 1) {
-        constexpr double worth_telling = 0.3;
+        constexpr double min_spread = 0.3;
         variance += spread * spread;
         widening += seen * spread * spread;
-        if (spread > worth_telling) reasons += (reasons.empty() ? "" : ", ") + std::string(reason);
+        if (spread > min_spread) reasons += (reasons.empty() ? "" : ", ") + std::string(reason);
     }
 };
 
@@ -119,7 +119,7 @@ Doubt doubt_about(const Classification& what, const Form& form) {
 
 // Mean of two independent answers weighted by their precision, as of errors of measurement: the category's mass with
 // its doubt, and the mass of any thing of this size.
-void draw_towards_any_thing(MassEstimate& estimate, Doubt& doubt, const CategoryData& any, const Form& form) {
+void blend_with_any_thing(MassEstimate& estimate, Doubt& doubt, const CategoryData& any, const Form& form) {
     const double weight = doubt.variance / (doubt.variance + spread_of_any_thing * spread_of_any_thing);
     const double mass_of_any = mass_of_box(any, form, AttributeLevel::standard).mass.typical;
     const double factor = std::pow(mass_of_any / estimate.mass.typical, weight);
@@ -144,7 +144,7 @@ double mass_exponent(const CategoryData& category) {
     constexpr double solid_from = 0.95, flattening = 0.8;
     const bool is_of_many_kinds = category.domain == "general";
     const bool is_as_told =
-        is_of_many_kinds || category.exponent >= solid_from || category.said_by.contains("exponent");
+        is_of_many_kinds || category.exponent >= solid_from || category.set_by_file.contains("exponent");
     return is_as_told ? category.exponent : flattening * category.exponent;
 }
 
@@ -162,8 +162,8 @@ MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& wha
     } else {
         estimate = mass_of_box(category, form, what.level);
         // A user who weighed the things knows their mass better.
-        const bool is_users = category.said_by.contains("mass");
-        if (form.size_known && &category != &any && !is_users) draw_towards_any_thing(estimate, doubt, any, form);
+        const bool is_users = category.set_by_file.contains("mass");
+        if (form.size_known && &category != &any && !is_users) blend_with_any_thing(estimate, doubt, any, form);
     }
     widen(estimate, doubt);
     return estimate;

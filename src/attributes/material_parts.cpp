@@ -20,7 +20,7 @@ using geometry::MassProperties;
 constexpr double sheet_of_solid = 0.005;  // m: thickness of a sheet of a material that has no usual wall
 // Range of wall thickness relative to the usual one; a mass that it cannot reach is reached by scaling all densities
 // alike.
-constexpr double thinnest = 0.05, thickest = 20;
+constexpr double min_wall_factor = 0.05, max_wall_factor = 20;
 
 struct Amount {
     double wall = 0, core = 0;  // m³
@@ -51,9 +51,9 @@ double total_mass(const std::vector<MaterialPart>& parts, double factor) {
 
 // Factor on the usual wall thickness at which the parts have this mass; the total mass grows with the factor.
 double fitting_walls(const std::vector<MaterialPart>& parts, double mass) {
-    if (total_mass(parts, thinnest) >= mass) return thinnest;
-    if (total_mass(parts, thickest) <= mass) return thickest;
-    double low = std::log(thinnest), high = std::log(thickest);
+    if (total_mass(parts, min_wall_factor) >= mass) return min_wall_factor;
+    if (total_mass(parts, max_wall_factor) <= mass) return max_wall_factor;
+    double low = std::log(min_wall_factor), high = std::log(max_wall_factor);
     for (int halving = 0; halving < 50; ++halving) {
         const double middle = (low + high) / 2;
         (total_mass(parts, std::exp(middle)) < mass ? low : high) = middle;
@@ -174,8 +174,8 @@ std::optional<CenterAndInertia> spread_over(const std::vector<MaterialPart>& par
     std::string walls;
     if (has_walls) {
         walls = ", walls " + short_number(factor) + " times as thick as usual to make up the mass";
-        if (factor == thinnest) walls += ": the least, and still too heavy, so all parts are made lighter alike";
-        if (factor == thickest) walls += ": the most, and still too light, so all parts are made heavier alike";
+        if (factor == min_wall_factor) walls += ": the least, and still too heavy, so all parts are made lighter alike";
+        if (factor == max_wall_factor) walls += ": the most, and still too light, so all parts are made heavier alike";
     }
     return CenterAndInertia{whole.center, (mass / whole.volume) * whole.inertia,
                             "spread over its parts (" + fractions_text(parts, factor) + ")" + walls,

@@ -37,7 +37,7 @@ struct Occurrence {
     std::size_t end;
 };
 
-bool says_more(const Occurrence& a, const Occurrence& b) {
+bool is_preferred(const Occurrence& a, const Occurrence& b) {
     if (a.segment != b.segment) return a.segment < b.segment;
     if (a.end != b.end) return a.end > b.end;
     return a.phrase->length > b.phrase->length;
@@ -71,7 +71,7 @@ std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t lo
     const std::vector<Token> tokens = tokens_of(text);
     const std::vector<Occurrence> found = occurrences(index, longest_phrase, tokens);
     if (found.empty()) return std::nullopt;
-    const Occurrence& best = *std::min_element(found.begin(), found.end(), says_more);
+    const Occurrence& best = *std::min_element(found.begin(), found.end(), is_preferred);
 
     // Other phrases of the text, for the reader; parts of the deciding phrase are left out.
     PhraseMatch match{

@@ -17,12 +17,12 @@
 namespace embody::attributes {
 namespace {
 
-constexpr double heaviest_density = 22600;  // osmium, kg/m³
+constexpr double max_density = 22600;  // osmium, kg/m³
 
 // "usual for chair", with the user's file where it says so.
 std::string usual_for(const CategoryData& category, const char* field) {
-    const auto file = category.said_by.find(field);
-    return "usual for " + category.name + (file != category.said_by.end() ? ", says your " + file->second : "");
+    const auto file = category.set_by_file.find(field);
+    return "usual for " + category.name + (file != category.set_by_file.end() ? ", says your " + file->second : "");
 }
 
 void put_identity(AttributeSet& set, const ModelFacts& facts, const Classification& what) {
@@ -52,7 +52,7 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
              AttributeLevel::model);
     } else {
         kind(category.movable ? category.kind : PhysicalKind::static_body,
-             usual_for(category, category.said_by.contains("movable") ? "movable" : "kind"), what.level);
+             usual_for(category, category.set_by_file.contains("movable") ? "movable" : "kind"), what.level);
     }
 }
 
@@ -76,7 +76,7 @@ void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& c
 void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& substance, const Form& form) {
     // The mass is clamped to the registry's range and to the density of the densest element.
     const AttributeDescription& range = *describe("mass");
-    const double max_mass = std::min(*range.high, heaviest_density * form.volume);
+    const double max_mass = std::min(*range.high, max_density * form.volume);
     const auto possible = [&](double mass) { return std::clamp(mass, std::min(*range.low, max_mass), max_mass); };
     const Interval mass{possible(estimate.mass.low), possible(estimate.mass.typical), possible(estimate.mass.high)};
     set.put({"mass", mass.typical, mass.low, mass.high, estimate.source, estimate.level});
@@ -90,7 +90,7 @@ void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& 
         set.put({"fill_fraction", fill, {}, {}, "mass / (density x volume)", AttributeLevel::model});
     } else {
         set.put({"density",
-                 std::min(mass.typical / form.volume, heaviest_density),
+                 std::min(mass.typical / form.volume, max_density),
                  {},
                  {},
                  "mass / volume: " + substance.name + " would be too light for it",

@@ -249,9 +249,9 @@ void note_users(CategoryData& category, const TaxonomyEntry& entry) {
     for (const auto& [field, value] : (*entry.object).items()) {
         const auto file = entry.users.find(field);
         if (file != entry.users.end()) {
-            category.said_by[field] = file->second;
+            category.set_by_file[field] = file->second;
         } else {
-            category.said_by.erase(field);
+            category.set_by_file.erase(field);
         }
     }
 }
@@ -307,7 +307,7 @@ Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::pat
         std::ranges::move(*read, std::back_inserter(entries));
     }
     if (!user_folder.empty()) {
-        if (auto laid = lay_over(entries, user_folder, data.user_words); !laid) return laid;
+        if (auto laid = apply_overlay(entries, user_folder, data.user_words); !laid) return laid;
     }
     for (const TaxonomyEntry& entry : entries) {
         if (auto loaded = load_category_tree(data, entry); !loaded) return loaded;

@@ -65,7 +65,7 @@ struct CategoryData {
     std::string material;
     std::string source;  ///< of the numbers above
     std::map<std::string, std::string, std::less<>>
-        said_by;  ///< field → the user's file that set it; fields of our own files are absent
+        set_by_file;  ///< field → the user's file that set it; fields of our own files are absent
     std::vector<CategoryAttribute> attributes;  ///< other usual values, such as the stiffness of a cushion
     std::string modelled_as;  ///< name of the entry that a model of it shows, for beer "beer bottle"; empty: itself
     std::optional<std::size_t> model_entry;  ///< index of that entry

@@ -127,8 +127,8 @@ void sign_new(TaxonomyEntry& entry, const std::string& file) {
     for (const auto& [field, value] : (*entry.object).items()) entry.users[field] = file;
 }
 
-Result<void> lay_entry_over(std::vector<TaxonomyEntry>& entries, TaxonomyEntry given, const std::string& file,
-                            TaxonomyEntry* parent, UserWords& user_words) {
+Result<void> apply_entry(std::vector<TaxonomyEntry>& entries, TaxonomyEntry given, const std::string& file,
+                         TaxonomyEntry* parent, UserWords& user_words) {
     const std::string name = text_of((*given.object), "name");
     if (name.empty()) return Error{given.where + ".name", "is missing", "name an entry of ours, or a new one"};
     const Found known = find(entries, name);
@@ -152,7 +152,7 @@ Result<void> lay_entry_over(std::vector<TaxonomyEntry>& entries, TaxonomyEntry g
     if (auto words = assign_words(entries, *find(entries, name).entry, given, file, user_words); !words) return words;
     for (const TaxonomyEntry& one : inner) {
         TaxonomyEntry* owner = find(entries, name).entry;
-        if (auto laid = lay_entry_over(entries, one, file, owner, user_words); !laid) return laid;
+        if (auto laid = apply_entry(entries, one, file, owner, user_words); !laid) return laid;
     }
     return {};
 }
@@ -187,7 +187,8 @@ Result<std::vector<TaxonomyEntry>> read_entries(const std::filesystem::path& fil
     return entries;
 }
 
-Result<void> lay_over(std::vector<TaxonomyEntry>& entries, const std::filesystem::path& folder, UserWords& user_words) {
+Result<void> apply_overlay(std::vector<TaxonomyEntry>& entries, const std::filesystem::path& folder,
+                           UserWords& user_words) {
     std::error_code failure;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
@@ -199,8 +200,7 @@ Result<void> lay_over(std::vector<TaxonomyEntry>& entries, const std::filesystem
         auto given = read_entries(file, file.string());
         if (!given) return given.error();
         for (TaxonomyEntry& one : *given) {
-            if (auto laid = lay_entry_over(entries, std::move(one), file.filename().string(), nullptr, user_words);
-                !laid)
+            if (auto laid = apply_entry(entries, std::move(one), file.filename().string(), nullptr, user_words); !laid)
                 return laid;
         }
     }

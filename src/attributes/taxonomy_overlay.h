@@ -27,7 +27,7 @@ Result<std::vector<TaxonomyEntry>> read_entries(const std::filesystem::path& fil
 /// Applies a user's files, in the order of their names, to our entries. An entry with a known name changes the fields
 /// that it sets and adds its words; an entry with another name is new. A word that belonged to another entry moves.
 /// `user_words` gets the stems of all words in the user's files, with the file. Errors name file, entry and field.
-Result<void> lay_over(std::vector<TaxonomyEntry>& entries, const std::filesystem::path& folder,
-                      std::map<std::string, std::string, std::less<>>& user_words);
+Result<void> apply_overlay(std::vector<TaxonomyEntry>& entries, const std::filesystem::path& folder,
+                           std::map<std::string, std::string, std::less<>>& user_words);
 
 }  // namespace embody::attributes

@@ -179,7 +179,7 @@ Result<AttributeSet> EntityAttributes::acting(const Entity& entity) {
     if (!own.ok()) return own.error();
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
         const ModelFacts& facts = facts_of(entity, *shape);
-        AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
+        AttributeSet set = override_by(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
         complete_resolution(set, facts.geometry);
         attributes::put_mass_of_primitive(set, facts.geometry);
@@ -191,7 +191,7 @@ Result<AttributeSet> EntityAttributes::acting(const Entity& entity) {
     ModelFacts facts = model.facts;
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
     AttributeSet set =
-        own.value().empty() ? std::move(automatic).value() : lay_over(automatic.value(), own.value(), facts);
+        own.value().empty() ? std::move(automatic).value() : override_by(automatic.value(), own.value(), facts);
     complete_resolution(set, facts.geometry);
     return set;
 }
@@ -240,8 +240,8 @@ Result<std::vector<attributes::Issue>> EntityAttributes::contradictions(const En
     return issues;
 }
 
-AttributeSet EntityAttributes::lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& own,
-                                        const ModelFacts& facts) const {
+AttributeSet EntityAttributes::override_by(const AttributeSet& automatic, const std::vector<AttributeEntry>& own,
+                                           const ModelFacts& facts) const {
     return models_.taxonomy() ? attributes::with_manual(*models_.taxonomy(), automatic, own, facts)
                               : attributes::with_manual(automatic, own, facts);
 }

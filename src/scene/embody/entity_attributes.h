@@ -39,9 +39,9 @@ public:
     void forget_shared() { sets_.clear(); }
 
 private:
-    [[nodiscard]] attributes::AttributeSet lay_over(const attributes::AttributeSet& automatic,
-                                                    const std::vector<attributes::AttributeEntry>& own,
-                                                    const attributes::ModelFacts& facts) const;
+    [[nodiscard]] attributes::AttributeSet override_by(const attributes::AttributeSet& automatic,
+                                                       const std::vector<attributes::AttributeEntry>& own,
+                                                       const attributes::ModelFacts& facts) const;
     /// Attributes without the entity's own: those of its category if that is not rigid, else those of a solid body.
     [[nodiscard]] attributes::AttributeSet primitive_attributes(const Entity& entity,
                                                                 const physics::ShapeDefinition& shape,

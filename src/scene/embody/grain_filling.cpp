@@ -15,7 +15,7 @@ namespace {
 constexpr double spacing = 1.1;  // of the rows, in diameters: 0.74 / 1.1³ = 0.556 of the space is grain
 // Largest random shift along an axis, in diameters: two balls 0.1 d apart that are both shifted by √3 times that
 // towards each other still do not touch.
-constexpr double shake = 0.028;
+constexpr double jitter = 0.028;
 // Maximum number of lattice places: they take about a second.
 constexpr std::size_t max_places = 50'000'000;
 // The rule for the diameter ignores edges: at most this fraction of the wanted number may be left out at the top.
@@ -31,7 +31,7 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
 
     // Rows along X in layers upwards; every third layer lies above the first.
     const double a = spacing * diameter, row = a * std::sqrt(3.0) / 2, layer = a * std::sqrt(2.0 / 3);
-    const Vec3 first = bounds.lower + Vec3{diameter, diameter, diameter} * (0.5 + shake);
+    const Vec3 first = bounds.lower + Vec3{diameter, diameter, diameter} * (0.5 + jitter);
     const auto count = [&](double extent, double step) {
         return static_cast<std::int64_t>(std::max(0.0, (extent - diameter) / step)) + 2;
     };
@@ -46,12 +46,12 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
                     return Error{"simulated_diameter", "is too small to fill so large a shape", "make it larger"};
                 const double shift_x = static_cast<double>((iz + iy % 3) % 2) * a / 2;
                 const double shift_z = static_cast<double>(iy % 3) * row / 3;
-                const Vec3 shaken{random.between(-shake, shake), random.between(-shake, shake),
-                                  random.between(-shake, shake)};
+                const Vec3 offset{random.between(-jitter, jitter), random.between(-jitter, jitter),
+                                  random.between(-jitter, jitter)};
                 const Vec3 place = first +
                                    Vec3{static_cast<double>(ix) * a + shift_x, static_cast<double>(iy) * layer,
                                         static_cast<double>(iz) * row + shift_z} +
-                                   shaken * diameter;
+                                   offset * diameter;
                 if (!region.value().holds_ball(place, diameter / 2)) continue;
                 if (centers.size() < max_count) {
                     centers.push_back(place);

@@ -166,7 +166,7 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
 }
 
 // Undo and redo lead to a document that existed before; no state of a run may prevent it.
-Result<void> SessionState::insist_on_changes(const std::vector<Change>& changes) {
+Result<void> SessionState::force_changes(const std::vector<Change>& changes) {
     Result<void> done = run_changes(changes);
     if (done.ok() || play_state == PlayState::stopped) return done;
     put_in_document(changes, true);
@@ -213,7 +213,7 @@ Result<std::string> SessionState::undo() {
     if (!edit) return std::string();
     if (edit->catalog) return undo_on_catalog(*this);
     const std::vector<Change> back = reversed(edit->changes);
-    if (Result<void> done = insist_on_changes(back); !done.ok()) return done.error();
+    if (Result<void> done = force_changes(back); !done.ok()) return done.error();
     std::string label = edit->label;
     {
         const std::lock_guard lock(rescue_mutex);
@@ -230,7 +230,7 @@ Result<std::string> SessionState::redo() {
     const Edit* edit = history.redoable();
     if (!edit) return std::string();
     if (edit->catalog) return redo_on_catalog(*this);
-    if (Result<void> done = insist_on_changes(edit->changes); !done.ok()) return done.error();
+    if (Result<void> done = force_changes(edit->changes); !done.ok()) return done.error();
     std::string label = edit->label;
     json changes = json::array();
     for (const Change& change : edit->changes) changes.push_back(change_json(change));

@@ -99,7 +99,7 @@ private:
     Result<void> sync_heading(const HeadingChange& change);
     void put_in_document(const std::vector<Change>& changes, bool is_in_hand);
     Result<void> run_changes(const std::vector<Change>& changes);
-    Result<void> insist_on_changes(const std::vector<Change>& changes);
+    Result<void> force_changes(const std::vector<Change>& changes);
     void tell_step();
     void tell_notes();
     [[nodiscard]] nlohmann::json change_json(const Change& change) const;
