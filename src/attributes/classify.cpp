@@ -38,7 +38,7 @@ constexpr double overruled = 0.5;            // factor for a phrase of the name 
 constexpr double trust_in_compound = 0.9;    // "deskchair"
 constexpr double trust_in_ending = 0.65;     // "Kaffeetisch"
 constexpr double nothing_known = 0.05;
-constexpr std::size_t long_name = 6;     // words; a longer name is a sales text, whose last noun says less than a tag
+constexpr std::size_t long_name = 6;     // words; from here on it is a sales text, whose last noun says less than a tag
 constexpr double trust_in_long = 0.55;   // factor on the confidence of a short name
 constexpr double close_runner_up = 0.6;  // of the winner's confidence
 
@@ -195,7 +195,7 @@ OtherMeanings other_meanings(const Taxonomy::Data& data, const std::vector<Token
 // Adds meanings that a person should know of, with less confidence than the taxonomy's; the source of the first
 // candidate names them.
 void add_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others, std::vector<Candidate>& found) {
-    constexpr double min_odds = 0.05;  // odds
+    constexpr double min_odds = 0.05;
     for (std::size_t i = 0; i < others.odds.size() && i < 3; ++i) {
         if (others.odds[i] < min_odds) continue;
         Candidate other = candidate_of(data, name_trust, others.read, i);

@@ -19,10 +19,9 @@ struct Candidate {
     std::string source;  ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
     std::string phrase;  ///< the words that decided; empty where none did
     std::string synset;  ///< what these words mean in WordNet; empty where unknown
-    std::size_t steps = 0;  ///< hypernyms from that meaning up to the category
-    std::string reckoning;  ///< how the confidence was computed
-    AttributeLevel level =
-        AttributeLevel::standard;  ///< subcategory, category, or standard where no source has an answer
+    std::size_t steps = 0;                            ///< hypernyms from that meaning up to the category
+    std::string reckoning;                            ///< how the confidence was computed
+    AttributeLevel level = AttributeLevel::standard;  ///< subcategory, category, or standard if unknown
 };
 
 /// What a model is, and why we think so.

@@ -71,7 +71,7 @@ public:
     [[nodiscard]] bool ok() const { return !error_.has_value(); }
     /// Keeps the first error.
     void fail(const std::string& where, std::string why, std::string remedy = {});
-    /// Refuses a field of this object with the error of fail().
+    /// Like fail(), at a field of this object.
     void refuse(std::string_view field, std::string why, std::string remedy = {});
     /// The path of a field of this object; of the object itself for an empty name.
     [[nodiscard]] std::string path(std::string_view field) const;
@@ -86,7 +86,7 @@ private:
     bool is_object_;
 };
 
-/// Readers of elements of arrays and of single values. Each calls fail() with `where` and returns false.
+/// Readers of elements of arrays and of single values. At an error each sets `error` with `where` and returns false.
 bool read_number(const nlohmann::json& json, const std::string& where, double& value, std::optional<Error>& error,
                  NumberRange range = any_number);
 bool read_vector(const nlohmann::json& json, const std::string& where, Vec3& value, std::optional<Error>& error);

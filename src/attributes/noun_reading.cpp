@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From a noun to the taxonomy through WordNet: choice of the sense, then the nearest hypernym that is a category.
-// The relatedness of meanings is the information content of their most specific common hypernym (P. Resnik, "Using
+// The similarity of meanings is the information content of their most specific common hypernym (P. Resnik, "Using
 // information content to evaluate semantic similarity in a taxonomy", IJCAI 1995), computed here from the number of
 // synsets below a node, without a corpus.
 #include "attributes/noun_reading.h"
@@ -159,7 +159,7 @@ Surroundings::Surroundings(const Taxonomy::Data& data, const ModelFacts& facts)
     for (const std::string& tag : facts.tags) add_words(tokens_of(tag), nullptr);
     add_words(tokens_of(facts.folder), nullptr);
 
-    // The catalogue's own category names a room or a trade, and so do our files.
+    // The catalogue's own category names a room or a trade, and so do the names of the taxonomy's files.
     const std::vector<Token> category = tokens_of(facts.catalogue_category);
     add_words(category, nullptr);
     for (const Token& token : category) domains_.insert(token.stem);

@@ -41,7 +41,7 @@ public:
     [[nodiscard]] double size_fit(const CategoryData& category) const;
     /// Whether there is any evidence.
     [[nodiscard]] bool tell() const { return !words_.empty() || !domains_.empty() || size_is_stated_; }
-    /// Relatedness of the meaning to the closest meaning of another word, 0 (none) to 1 (the same); empty where no
+    /// Similarity of the meaning to the closest meaning of another word, 0 (none) to 1 (the same); empty where no
     /// other word means a physical thing.
     [[nodiscard]] std::optional<double> similarity(wordnet::SynsetIndex meaning) const;
 

@@ -21,8 +21,7 @@ enum class Matter : std::uint8_t { none, body, solid, sheet, line, liquid, grain
 
 /// The properties of a kind.
 struct KindTraits {
-    std::string_view text =
-        {};  ///< in files, databases and messages: it must not change, since files and databases hold it
+    std::string_view text = {};     ///< in files, databases and messages: it must not change
     std::string_view meaning = {};  ///< for people, after the text: "rope is a line"
     /// Letters of the attributes that concern this kind, as in AttributeDescription::applies_to: the kind's own letter,
     /// then those of kinds whose attributes it has too. Empty: only the attributes of identity concern it.

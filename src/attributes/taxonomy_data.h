@@ -63,9 +63,8 @@ struct CategoryData {
     bool solid = false;                    ///< the closed surface is filled to fill_fraction with the material
     Interval fill_fraction;                ///< used where solid
     std::string material;
-    std::string source;  ///< of the numbers above
-    std::map<std::string, std::string, std::less<>>
-        set_by_file;  ///< field → the user's file that set it; fields of our own files are absent
+    std::string source;                                           ///< of the numbers above
+    std::map<std::string, std::string, std::less<>> set_by_file;  ///< field → the user's file that set it; else absent
     std::vector<CategoryAttribute> attributes;  ///< other usual values, such as the stiffness of a cushion
     std::string modelled_as;  ///< name of the entry that a model of it shows, for beer "beer bottle"; empty: itself
     std::optional<std::size_t> model_entry;  ///< index of that entry

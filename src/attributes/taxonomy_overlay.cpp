@@ -116,7 +116,7 @@ Result<void> change_entry(TaxonomyEntry& entry, const TaxonomyEntry& given, cons
             entry.users[field] = file;
         }
     }
-    // Errors of the entry are now the user's to correct.
+    // Errors of the entry now name the user's file.
     entry.where = given.where;
     return {};
 }

@@ -33,7 +33,7 @@ physics::CombineRule combine_rule(const std::string& name) {
     return physics::CombineRule::pair_table;
 }
 
-// The registry's default is for sets that a person or a file left incomplete.
+// The value, or the registry's default for a set that a person or a file left incomplete.
 double number_or_standard(const AttributeSet& set, const char* name) {
     return set.number(name, std::get<double>(describe(name)->standard));
 }
@@ -131,7 +131,7 @@ Result<physics::ShapeDefinition> decomposed_shape(const AttributeSet& attributes
     return physics::ShapeDefinition{std::move(compound)};
 }
 
-// As many digits as distinguish a value just beyond a limit from the limit.
+// Enough digits to distinguish a value just beyond a limit from the limit.
 std::string exact_number(double value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.7g", value);

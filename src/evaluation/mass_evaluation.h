@@ -39,8 +39,7 @@ struct MassEvaluation {
     MassFigures all;
     std::map<std::string, MassFigures> by_source, by_level;
     std::vector<MassPrediction> predictions;  ///< worst first
-    std::vector<std::string>
-        without_mass;  ///< ids of objects that were classified as something without mass (a liquid, a picture)
+    std::vector<std::string> without_mass;    ///< ids of objects whose answer has no mass (a liquid, a picture)
 };
 
 /// Whether the taxonomy may know the object's word. `unseen`: the category of the answer, with its subcategories and

@@ -92,10 +92,9 @@ private:
     bool merge(Edit& edit);
 
     std::deque<Edit> done_, undone_;
-    std::ptrdiff_t document_edits_ =
-        0;                      ///< number of done edits of the document; acts on the catalogue are not counted
-    std::ptrdiff_t saved_ = 0;  ///< their number when it was saved; -1: never again
-    bool merging_ = false;      ///< the last thing that happened was an edit
+    std::ptrdiff_t document_edits_ = 0;  ///< number of done edits of the document; acts on the catalogue are left out
+    std::ptrdiff_t saved_ = 0;           ///< their number when it was saved; -1: never again
+    bool merging_ = false;               ///< the last thing that happened was an edit
 };
 
 }  // namespace embody::scene

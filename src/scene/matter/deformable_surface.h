@@ -32,8 +32,8 @@ public:
     [[nodiscard]] std::optional<SurfaceHit> meet(std::span<const Vec3> positions, const Ray& ray) const;
 
 private:
-    std::vector<std::array<std::uint32_t, 3>>
-        faces_;  ///< outer faces of a solid, counter-clockwise from outside, or all faces of cloth
+    /// Outer faces of a solid, counter-clockwise from outside, or all faces of cloth.
+    std::vector<std::array<std::uint32_t, 3>> faces_;
     std::vector<std::uint32_t> nodes_;
     bool has_two_sides_;
 };
