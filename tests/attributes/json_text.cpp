@@ -16,10 +16,10 @@ std::string message_of(const std::string& text) {
 }
 
 TEST(JsonText, NestingIsCountedOutsideOfTextsOnly) {
-    const std::size_t most = max_nesting_depth;
-    EXPECT_TRUE(nests_too_deep(std::string(most + 1, '[')));
-    EXPECT_TRUE(nests_too_deep(R"("\"")" + std::string(most + 1, '{')));
-    EXPECT_FALSE(nests_too_deep(std::string(most, '[') + std::string(most, ']')));
+    const std::size_t max_depth = max_nesting_depth;
+    EXPECT_TRUE(nests_too_deep(std::string(max_depth + 1, '[')));
+    EXPECT_TRUE(nests_too_deep(R"("\"")" + std::string(max_depth + 1, '{')));
+    EXPECT_FALSE(nests_too_deep(std::string(max_depth, '[') + std::string(max_depth, ']')));
     EXPECT_FALSE(nests_too_deep("\"" + std::string(1000, '[') + "\""));
     EXPECT_FALSE(nests_too_deep("\"\\\"" + std::string(1000, '[') + "\""));
     EXPECT_FALSE(nests_too_deep("\"\\"));

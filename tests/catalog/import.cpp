@@ -151,17 +151,17 @@ TEST_F(ImportTest, ManyImportsLeaveTheIndexOfWordsFlat) {
 
 TEST_F(ImportTest, StopsWhenAskedAndGoesOnNextTime) {
     for (int i = 0; i < 10; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
-    std::size_t most_done = 0;
+    std::size_t last_done = 0;
     const auto stopped = import({models()}, {.progress = [&](const ImportProgress& progress) {
                                     EXPECT_EQ(progress.total, progress.done == 0 ? progress.total : 10u);
-                                    EXPECT_LE(progress.done, most_done + 1);
-                                    most_done = progress.done;
+                                    EXPECT_LE(progress.done, last_done + 1);
+                                    last_done = progress.done;
                                     return progress.done < 4;
                                 }});
     ASSERT_TRUE(stopped);
     EXPECT_TRUE(stopped->stopped);
     EXPECT_EQ(stopped->added, 4u);
-    EXPECT_EQ(most_done, 4u);
+    EXPECT_EQ(last_done, 4u);
     const auto rest = import();
     EXPECT_EQ(rest->added, 6u);
     EXPECT_EQ(rest->unchanged, 4u);

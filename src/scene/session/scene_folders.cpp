@@ -82,7 +82,7 @@ bool is_file(const fs::path& file) {
 // The file of a scene of that name, existing or not. A file with a stem made by a person is found by that stem.
 fs::path file_in(const fs::path& folder, const std::string& name) {
     fs::path file = folder / (encoded(name) + ".json");
-    const bool is_ours = encoded(decoded(name)) == name;  // as a stem it is the code of a name, maybe of another one
+    const bool is_ours = encoded(decoded(name)) == name;  // is itself a stem of encoded(), maybe of another name
     if (is_ours || !is_stem(name) || is_file(file)) return file;
     fs::path named_otherwise = folder / (name + ".json");
     return is_file(named_otherwise) ? named_otherwise : file;

@@ -33,11 +33,11 @@ Document box_of_sand(double budget = 300) {
     return document;
 }
 
-double least_distance(const std::vector<Vec3>& points) {
-    double least = 1e300;
+double min_distance(const std::vector<Vec3>& points) {
+    double smallest = 1e300;
     for (std::size_t i = 0; i < points.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) least = std::min(least, distance(points[i], points[j]));
-    return least;
+        for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, distance(points[i], points[j]));
+    return smallest;
 }
 
 TEST(GrainFillingRefuses, ShapesThatHoldNone) {
@@ -89,10 +89,10 @@ TEST(GrainFilling, FillsEachShapeWithoutOverlap) {
     for (const auto& [shape, volume] : shapes) {
         const auto filled = fill_with_grains(shape, d, 100'000, 7);
         ASSERT_TRUE(filled.ok()) << physics::shape_name(shape) << filled.error().message();
-        EXPECT_GE(least_distance(filled.value()), d) << physics::shape_name(shape);
-        const double share = static_cast<double>(filled.value().size()) * pi / 6 * d * d * d / volume;
-        EXPECT_LT(share, 0.56) << physics::shape_name(shape);
-        EXPECT_GT(share, 0.2) << physics::shape_name(shape);  // the rim that is too narrow for a whole ball is empty
+        EXPECT_GE(min_distance(filled.value()), d) << physics::shape_name(shape);
+        const double fraction = static_cast<double>(filled.value().size()) * pi / 6 * d * d * d / volume;
+        EXPECT_LT(fraction, 0.56) << physics::shape_name(shape);
+        EXPECT_GT(fraction, 0.2) << physics::shape_name(shape);  // the rim that is too narrow for a whole ball is empty
         EXPECT_EQ(filled.value(), fill_with_grains(shape, d, 100'000, 7).value());
     }
 }

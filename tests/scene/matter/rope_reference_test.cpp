@@ -72,10 +72,10 @@ TEST(RopeReference, HangsAsACatenary) {
 
 TEST(RopeReference, GripsADrumAsACapstan) {
     // Two hands lay a rope over half a turn of a drum, and pull it: T₂/T₁ = exp(μ π).
-    const double radius = 0.1, thickness = 2e-3, mu = 0.3, way = radius + thickness, straight = 0.2;
-    const double half = way * pi / 2 + straight, height = 2;
+    const double radius = 0.1, thickness = 2e-3, mu = 0.3, path_radius = radius + thickness, straight = 0.2;
+    const double half = path_radius * pi / 2 + straight, height = 2;
     Document document;
-    Entity& rope = rope_of(document, half, thickness, height + way);
+    Entity& rope = rope_of(document, half, thickness, height + path_radius);
     rope.attributes["mass"] = 0.01;
     rope.attributes["axial_stiffness"] = 2000.0;
     rope.attributes["bend_rigidity"] = 1e-6;
@@ -89,7 +89,7 @@ TEST(RopeReference, GripsADrumAsACapstan) {
         {"kind", to_value(attributes::PhysicalKind::static_body)}, {"friction_static", mu}, {"friction_dynamic", mu}};
     for (const double side : {1.0, -1.0}) {
         Entity& hand =
-            samples::add(document, "Hand", ShapeDefinition{SphereShape{2e-3}}, {side * half, height + way, 0});
+            samples::add(document, "Hand", ShapeDefinition{SphereShape{2e-3}}, {side * half, height + path_radius, 0});
         hand.attributes = {{"kinematic", true}, {"collision_mask", 0.0}};
     }
     const auto simulation = read_and_make(document);
@@ -100,7 +100,7 @@ TEST(RopeReference, GripsADrumAsACapstan) {
         for (int i = 0; i < std::lround(60 * seconds); ++i) simulation->step();
     };
     // The hands move down on both sides, slightly further than the rope is long, and then pull it over.
-    const double across = half - way, down = way + straight + 0.005 * half;
+    const double across = half - path_radius, down = path_radius + straight + 0.005 * half;
     lead({-across, -down, 0}, {across, -down, 0}, 4);
     lead({0, -0.05, 0}, {0, 0.05, 0}, 2.5);
     double low = 0, high = 0;

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr int few = 2500, many = 4 * few;
 /// Bound on the ratio of processor times; quadratic growth has a ratio of sixteen.
-constexpr double most_growth = 8;
+constexpr double max_growth = 8;
 
 json sphere_at(int number) {
     const double x = 0.5 * (number % 100), z = 0.5 * (number / 100);
@@ -46,7 +46,7 @@ protected:
     using Part = std::function<void(int count)>;
 
     double seconds(int count, const Part& prepare, const Part& work) {
-        double least = 1e300;
+        double min_seconds = 1e300;
         for (int trial = 0; trial < 3; ++trial) {
             session_ = std::move(*Session::create(nullptr, {}));
             prepare(count);
@@ -54,15 +54,15 @@ protected:
             const std::clock_t began = std::clock();
             work(count);
             (void)session_->take_events();
-            least = std::min(least, static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
+            min_seconds = std::min(min_seconds, static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
         }
-        return least;
+        return min_seconds;
     }
     void expect_linear(const Part& prepare, const Part& work) {
         const double small = seconds(few, prepare, work), large = seconds(many, prepare, work);
         std::printf("%d: %.0f ms, %d: %.0f ms, %.1f times\n", few, 1e3 * small, many, 1e3 * large, large / small);
         // Shorter times are below the resolution of the clock.
-        EXPECT_LT(large, std::max(most_growth * small, 0.1));
+        EXPECT_LT(large, std::max(max_growth * small, 0.1));
     }
     void load(int count) { run("scene.load", {{"scene", scene_of(count)}}); }
 };
