@@ -61,7 +61,8 @@ public:
         try {
             app_.parse(count, words);
         } catch (const CLI::ParseError& error) {
-            // 0: help or version was asked for. An error quotes the words, which may be names of files.
+            // CLI11's exit code is 0 where help or version was asked for. An error quotes the words, which may be names
+            // of files.
             std::ostringstream output, errors;
             const int code = app_.exit(error, output, errors);
             write_text(stdout, printable_lines(output.str()));
@@ -80,7 +81,7 @@ private:
         command.app->callback([this, into = command.into] { chosen_ = *into; });
         return command;
     }
-    /// Read where the environment says it too, by every part and process of this command.
+    /// Sets the environment variable, because every part and process of this command reads the folder there.
     static void add_taxonomy(CLI::App* app) {
         const auto name = [](const std::string& folder) { setenv("EMBODY_TAXONOMY", folder.c_str(), 1); };
         app->add_option_function<std::string>("--taxonomy", name, "Folder of your own categories, laid over ours")
@@ -322,7 +323,7 @@ private:
         add_json(c);
     }
 
-    /// Its options and its help are those of the program that runs it.
+    /// Options and help of a race are those of the program that runs it.
     void add_race(const Command<BenchArguments>& bench) {
         CLI::App* race = bench.app->add_subcommand("race", "Race other engines: embody bench race --help");
         race->set_help_flag();

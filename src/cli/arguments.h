@@ -10,12 +10,13 @@
 
 namespace embody::cli {
 
-// What a person asked for, one struct a command. Every command knows --json; those with a database know --database.
+// What a person asked for: one struct for each command. Every command has --json; those with a database have
+// --database.
 
 struct ServeArguments {
     std::filesystem::path database;
     std::string address = "127.0.0.1";
-    std::optional<unsigned short> port;  ///< open: 8420, or a free one where that is taken
+    std::optional<unsigned short> port;  ///< open: 8420, or a free port where 8420 is in use
     std::optional<std::string> scene;    ///< none: the furnished room, or an empty scene where its models are missing
     bool open_browser = false;
 };
@@ -40,12 +41,12 @@ struct ShowArguments {
     std::string model;
     bool json = false;
 };
-/// Models chosen by what they are, in place of one that is named.
+/// Selects models by a search, instead of one model by its name.
 struct ManyArguments {
     std::string query, category;
     bool all = false;
-    bool dry_run = false;  ///< say what would be changed; for one model too
-    bool skip = false;     ///< change the others where some refuse
+    bool dry_run = false;  ///< print what would change and change nothing; works for one model, too
+    bool skip = false;     ///< change the other models where some refuse
 
     [[nodiscard]] bool are_chosen() const { return all || !query.empty() || !category.empty(); }
 };
@@ -80,7 +81,7 @@ struct SimulateArguments {
     std::string scene;  ///< a file, or the name of a demo scene or builder
     double seconds = 10;
     std::filesystem::path record;
-    double rate = 60;  ///< samples a simulated second
+    double rate = 60;  ///< samples per simulated second
     bool contacts = false, energy = false;
     std::filesystem::path trace;
     bool json = false;
@@ -93,7 +94,7 @@ struct CheckArguments {
 struct ClassifyArguments {
     std::string name;
     std::vector<std::string> tags;
-    std::string category, folder;  ///< as a catalogue would say
+    std::string category, folder;  ///< as a catalogue would name them
     std::vector<double> size;      ///< extents, m; empty: unknown
     bool json = false;
 };
@@ -126,8 +127,8 @@ struct BenchArguments {
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says
-    int bodies = 100'000;                 ///< scaling stops at this many
-    int models = 0;                       ///< that catalogue fills the database up to
+    int bodies = 100'000;                 ///< largest scene of the suite "scaling"
+    int models = 0;                       ///< number of models that the suite "catalogue" fills the database up to
     bool json = false;
 };
 
@@ -139,8 +140,7 @@ using Arguments =
 /// Exit codes of the program.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };
 
-/// Either what to do, or that the program is done already (help was printed, or the words were wrong and that was
-/// said).
+/// The command to run; or the exit code of a program that is done already, because it printed help or an error.
 struct Parsed {
     std::optional<Arguments> arguments;
     int exit_code = exit_ok;

@@ -37,7 +37,7 @@ std::string default_text(const AttributeDescription& description) {
     return attributes::to_text(description.standard);
 }
 
-// Of those whose letters its description has.
+// The kinds whose letters `applies_to` of the description holds.
 std::string kinds_text(const AttributeDescription& description) {
     if (description.applies_to == attributes::every_kind.data()) return "all";
     std::string text;

@@ -23,7 +23,7 @@ double milliseconds_of(const std::function<void()>& work) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Resident set of this process, MB; a key of /proc/self/status.
+/// Resident set of this process, MB. `key`: of /proc/self/status.
 double resident_megabytes(const std::string& key) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -44,7 +44,7 @@ std::string text_of(const catalog::SearchQuery& query) {
 }
 
 Result<Timed> time_queries(const catalog::Catalog& catalog, const std::vector<catalog::SearchQuery>& queries) {
-    // The better of three: other programs' time is not ours.
+    // The best of three runs, because other programs take time, too.
     Timed timed{"search", {}, {}};
     double worst = 0;
     for (const catalog::SearchQuery& query : queries) {
@@ -65,7 +65,7 @@ Result<Timed> time_queries(const catalog::Catalog& catalog, const std::vector<ca
 }
 
 Result<Timed> time_scrolling(const catalog::Catalog& catalog) {
-    // What a browser asks for on the way from the first model to the last: rows and pictures.
+    // A browser that scrolls from the first model to the last asks for these rows and pictures.
     Timed timed{"scroll a page of 60, with pictures", {}, {}};
     for (catalog::SearchQuery query{.limit = 60};; query.offset += query.limit) {
         std::optional<Error> problem;
@@ -119,7 +119,7 @@ int run_catalogue_bench(const BenchArguments& arguments) {
     rows.push_back({"open the database", {milliseconds_of([&] { catalog = open_catalog(arguments.database); })}, {}});
     if (!catalog) return report(catalog.error());
 
-    // Fill it.
+    // Fill the database.
     const std::int64_t before = (*catalog)->model_count();
     ProgressBar bar("Adding variants");
     std::optional<Error> problem;
@@ -133,7 +133,7 @@ int run_catalogue_bench(const BenchArguments& arguments) {
     if (problem) return report(*problem);
     const std::int64_t count = (*catalog)->model_count();
 
-    // A fresh connection, as a server that starts.
+    // Open it on a new connection, as a server does at its start.
     rows.push_back({"open it again", {milliseconds_of([&] { catalog = open_catalog(arguments.database); })}, {}});
     if (!catalog) return report(catalog.error());
     const double at_start = resident_megabytes("VmRSS");

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int samples = 6000;
 
-// Hollow things of a household; of each word the best matches.
+// Words for hollow things of a household; the models that match each word best are decomposed.
 constexpr const char* decomposed_words[] = {"mug",  "cup",   "glass",   "chair", "armchair", "table", "desk",
                                             "lamp", "shelf", "cabinet", "sofa",  "bottle",   "shoe",  "toy"};
 constexpr int models_a_word = 3;

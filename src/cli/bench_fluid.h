@@ -5,8 +5,8 @@
 
 namespace embody::cli {
 
-/// Times a tank of sloshing water with things afloat beside other rigid bodies, at several numbers of particles and
-/// workers. Fails where volume or drafts at the end are wrong.
+/// Times a tank of sloshing water with floating bodies beside other rigid bodies, for several numbers of particles and
+/// workers. Fails where the liquid's volume or a body's draft is wrong at the end.
 int run_fluid(const BenchArguments& arguments);
 
 }  // namespace embody::cli

@@ -21,7 +21,7 @@ constexpr double angles[] = {21, 27, 32, 34, 38, 44};
 constexpr Size sizes[] = {{0.005, 1500}, {0.01, 1500}, {0.01, 3000}, {0.03, 1500}};
 constexpr int slabs[] = {1000, 2000, 5000};
 
-/// Rows of the report, and whether all heaps were right.
+/// Rows of the report, and whether all heaps were within the tolerance.
 struct Rows {
     nlohmann::json heaps = nlohmann::json::array(), slabs = nlohmann::json::array();
     bool right = true;

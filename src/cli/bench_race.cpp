@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty where this program cannot find itself.
+/// Path of embody-race; empty where this program's own path is unknown.
 fs::path race_program() {
     std::error_code problem;
     const fs::path own = fs::read_symlink("/proc/self/exe", problem);
@@ -34,7 +34,7 @@ int run_race(const std::vector<std::string>& words) {
                        "install libbullet-dev or libode-dev, then configure and build embody-race"});
     }
 
-    // The words as they came, behind the program's own name.
+    // The arguments unchanged, after the program's own name.
     std::vector<std::string> kept{program.string()};
     kept.insert(kept.end(), words.begin(), words.end());
     std::vector<char*> arguments;

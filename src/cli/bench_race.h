@@ -6,7 +6,7 @@
 
 namespace embody::cli {
 
-/// Runs embody-race, which lies beside this program, with these words; its output and exit code are handed through.
+/// Runs embody-race, which lies beside this program, with these arguments; passes on its output and exit code.
 int run_race(const std::vector<std::string>& words);
 
 }  // namespace embody::cli

@@ -5,8 +5,8 @@
 
 namespace embody::cli {
 
-/// Prints what a step costs with 1,000 bodies, 10,000 … `arguments.bodies`, and how it grows; fails where a scene did
-/// not end as it must.
+/// Prints the cost of a step with 1,000 bodies, 10,000 … `arguments.bodies`, and its growth; fails where the end state
+/// of a scene is wrong.
 int run_scaling(const BenchArguments& arguments);
 
 }  // namespace embody::cli

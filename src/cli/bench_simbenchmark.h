@@ -5,8 +5,8 @@
 
 namespace embody::cli {
 
-/// Runs SimBenchmark's accuracy tests, or the one of `arguments.scene`, beside the best published errors; fails only
-/// where an error is no number.
+/// Runs SimBenchmark's accuracy tests, or the one that `arguments.scene` names, and prints the errors beside the best
+/// published ones; fails only where an error is not a number.
 int run_simbenchmark(const BenchArguments& arguments);
 
 }  // namespace embody::cli

@@ -5,7 +5,8 @@
 
 namespace embody::cli {
 
-/// Stands up the structures, or the one of `arguments.scene`, and prints how they did; fails where a goal is missed.
+/// Simulates the structures, or the one that `arguments.scene` names, and prints the results; fails where a goal is
+/// missed.
 int run_stability(const BenchArguments& arguments);
 
 }  // namespace embody::cli

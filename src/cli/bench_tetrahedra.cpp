@@ -14,7 +14,7 @@
 namespace embody::cli {
 namespace {
 
-// Soft things of a household; of each word the best matches.
+// Words for soft things of a household; the models that match each word best are filled.
 constexpr const char* filled_words[] = {"cushion", "pillow", "sofa", "mattress", "teddy",
                                         "plush",   "ball",   "pouf", "armchair"};
 constexpr int models_a_word = 6;
@@ -23,7 +23,7 @@ struct Row {
     catalog::ModelSummary model;
     geometry::TetrahedralFilling filling;
     geometry::DihedralAngles angles;
-    double least_weight = 1;  // of the drawn vertices: how far they are carried outside of their tetrahedron
+    double least_weight = 1;  // smallest weight of a drawn vertex; negative: it is outside of its tetrahedron
     double fill_seconds = 0, embed_seconds = 0;
 };
 
@@ -92,7 +92,7 @@ int run_tetrahedra(const BenchArguments& arguments) {
     for (const catalog::ModelSummary& model : *models) {
         const auto row = run_one(**catalog, model);
         if (!row) {
-            // A sheet is one answer among others here.
+            // A model that is a sheet is a valid result here, not a failure.
             refused.push_back({{"model", model.key}, {"why", row.error().message()}});
             if (!arguments.json) print_text("{} {}\n", padded(model.name, 24), row.error().message());
             continue;

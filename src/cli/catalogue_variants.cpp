@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* variant_prefix = "variant:";
 
-// What distinguishes articles of one catalogue: looks, material, size.
+// Words that distinguish articles of one catalogue: looks, material, size.
 constexpr std::array looks{"red",     "blue",    "green",  "white",   "black",   "grey",   "beige",
                            "yellow",  "brown",   "modern", "old",     "classic", "rustic", "antique",
                            "simple",  "elegant", "folded", "painted", "worn",    "glossy", "matt",
@@ -33,7 +33,8 @@ const auto& pick(const List& list, Random& random) {
 }
 
 catalog::ModelVariant make_variant(const catalog::ModelSummary& model, std::int64_t number, std::uint64_t seed) {
-    // Each from its own number, so that it is the same wherever an interrupted run goes on.
+    // The seed depends on the variant's number alone, so that a variant is the same wherever an interrupted run goes
+    // on.
     Random random(seed + 0x9E3779B97F4A7C15ull * static_cast<std::uint64_t>(number));
     const Size size = pick(sizes, random);
     const std::string look = pick(looks, random), material = pick(materials, random);
@@ -49,7 +50,7 @@ catalog::ModelVariant make_variant(const catalog::ModelSummary& model, std::int6
     return variant;
 }
 
-/// All models that are no variants, in the order of their ids.
+/// All models that are not variants, in the order of their ids.
 Result<std::vector<catalog::ModelSummary>> real_models(const catalog::Catalog& catalog) {
     std::vector<catalog::ModelSummary> models;
     for (catalog::SearchQuery query{.limit = 1000};; query.offset += query.limit) {
@@ -106,7 +107,7 @@ std::vector<catalog::SearchQuery> seeded_queries(const std::vector<catalog::Mode
                                                  const std::vector<catalog::CategoryCount>& categories,
                                                  std::uint64_t seed) {
     Random random(seed);
-    constexpr int page = 60;  // the Studio's
+    constexpr int page = 60;  // page size of the Studio
     std::vector<catalog::SearchQuery> queries;
     const auto add = [&](std::string words, std::string category = {}, int offset = 0) {
         queries.push_back({std::move(words), std::move(category), page, offset});

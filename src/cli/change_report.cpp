@@ -49,7 +49,7 @@ void print_report(const ChangeReport& report, bool dry_run) {
         if (report.models.size() > most_listed)
             print_text("  and {} more; --json lists all\n", report.models.size() - most_listed);
     }
-    // "set many" and "set" are one to the reader.
+    // To the reader "set many" and "set" are the same command.
     const std::string act = report.command.substr(0, report.command.find(' '));
     print_text("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", act, report.models.size(), report.chosen,
                report.values);
@@ -65,7 +65,7 @@ catalog::ChangeOptions watched_change(const char* title) {
     watch_interrupts();
     catalog::ChangeOptions options;
     options.progress = [bar = std::make_shared<ProgressBar>(title)](std::size_t done, std::size_t total) {
-        // One model is done before anybody reads it.
+        // For one model a bar would be gone before anybody could read it.
         if (total > 1) bar->show(done, total, "");
         if (done == total) bar->finish();
         return !interrupted();
@@ -77,7 +77,7 @@ int print_changes(const Result<catalog::ChangeReport>& result, bool dry_run, boo
     if (!result) return report(result.error());
     print_refused(*result);
     if (json) print_json(to_json(*result, dry_run));
-    // Without a batch nothing was done: either it was a question, or all were so already, or some refused.
+    // Without a batch nothing was changed: it was a dry run, or all models had the value already, or some refused.
     const bool stopped = !result->refused.empty() && result->models.empty();
     if (stopped) {
         print_error("embody: nothing was changed: {} of {} models refuse\n", result->refused.size(), result->chosen);

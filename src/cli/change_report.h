@@ -6,7 +6,7 @@
 
 namespace embody::cli {
 
-/// Says what a change of many models did, or would do; returns the program's exit code.
+/// Prints what a change of many models did, or would do; returns the program's exit code.
 int print_changes(const Result<catalog::ChangeReport>& result, bool dry_run, bool json);
 
 /// Options that show progress under this title and stop at Ctrl+C.

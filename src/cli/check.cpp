@@ -14,11 +14,11 @@ namespace {
 
 struct Checked {
     std::size_t entities = 0;
-    std::vector<std::string> notes;     ///< what is not simulated as its kind says
-    std::vector<Error> contradictions;  ///< between attributes of an entity that a person set; the scene runs with them
+    std::vector<std::string> notes;     ///< differences between what is simulated and what the entity's kind asks for
+    std::vector<Error> contradictions;  ///< between attributes that a person set; the scene can be played
 };
 
-/// Reads the file and brings it to life, as playing it would.
+/// Reads the file and creates the world, as playing it would.
 Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog* catalog) {
     auto document = scene::load_document(file);
     if (!document) return document.error();

@@ -33,8 +33,8 @@ attributes::ModelFacts facts_of(const ClassifyArguments& arguments) {
     return facts;
 }
 
-// What the name can mean in WordNet, the usual first, each with the three hypernyms above it: "crane.n.04 >
-// lifting_device .n.01 > …". Empty where WordNet does not have it.
+// The senses of the name in WordNet, the most common first, each with the three hypernyms above it: "crane.n.04 >
+// lifting_device.n.01 > …". Empty where WordNet does not have the name.
 std::vector<std::string> senses_of(const attributes::Taxonomy::Data& data, std::string_view name) {
     std::string words = attributes::stems_of(name);
     std::ranges::replace(words, ' ', '_');
@@ -53,7 +53,7 @@ std::vector<std::string> senses_of(const attributes::Taxonomy::Data& data, std::
     return senses;
 }
 
-// The unit in which things of this category would be as large as they usually are, m, where metres are not it.
+// The unit, in metres, in which the model would have the usual size of its category, where metres do not fit.
 std::optional<double> unit_that_fits(const attributes::Taxonomy& taxonomy, attributes::ModelFacts facts) {
     facts.size_is_stated = false;
     return attributes::suggested_scale(taxonomy, facts);

@@ -5,7 +5,7 @@
 
 namespace embody::cli {
 
-// One function a command, each in its own file. They print, and return the program's exit code.
+// One function for each command, each in its own file. They print, and return the program's exit code.
 
 int run_serve(const ServeArguments& arguments);
 int run_import(const ImportArguments& arguments);

@@ -28,7 +28,7 @@ std::string time_text(std::int64_t seconds, const char* form) {
     return text;
 }
 
-// "2026-11-22", "2026-11-22T14:30" (UTC), or so many days or hours ago: "7d", "2h".
+// A date "2026-11-22", a time "2026-11-22T14:30" (UTC), or a number of days or hours ago: "7d", "2h".
 Result<std::int64_t> read_since(const std::string& text) {
     if (text.empty()) return std::int64_t{0};
     for (const char* form : {"%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M", "%Y-%m-%d"}) {
@@ -82,7 +82,7 @@ int run_history(const HistoryArguments& arguments) {
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
     catalog::HistoryQuery query{.since = *since, .batch = arguments.batch, .limit = arguments.limit};
-    // A key of a model that is no longer there has its history all the same.
+    // A model that was removed still has its history under its key.
     if (!arguments.model.empty()) {
         const auto model = (*catalog)->model(arguments.model);
         query.model_key = model ? model->key : arguments.model;

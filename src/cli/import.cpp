@@ -9,7 +9,7 @@
 namespace embody::cli {
 namespace {
 
-/// One line: the model, then the reason, without naming the model's file a second time.
+/// One line: the model, then the reason, without a repetition of the model's file name.
 std::string text_of(const catalog::ImportFailure& failure) {
     std::string why = failure.error.message();
     if (why.starts_with(failure.path)) return why;
@@ -44,7 +44,7 @@ int run_import(const ImportArguments& arguments) {
     options.again = arguments.again;
     options.progress = [&](const catalog::ImportProgress& progress) {
         bar.show(progress.done, progress.total, progress.current);
-        // Ctrl+C ends the import after the model in hand; what is in the database stays.
+        // Ctrl+C ends the import after the current model; what is in the database stays.
         return !interrupted();
     };
     watch_interrupts();

@@ -3,8 +3,8 @@
 
 namespace embody::cli {
 
-/// From now on Ctrl+C and SIGTERM do not end the program but make interrupted() true, so that a long command can end
-/// with whole files; a second one ends it at once.
+/// After this call Ctrl+C and SIGTERM do not end the program but make interrupted() true, so that a long command can
+/// complete its files; a second signal ends the program at once.
 void watch_interrupts();
 bool interrupted();
 

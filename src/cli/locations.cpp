@@ -22,7 +22,7 @@ fs::path studio_folder() { return from_environment("EMBODY_STUDIO", fs::path(EMB
 fs::path saved_scenes_folder() { return catalog::Catalog::default_file().parent_path() / "scenes"; }
 
 Result<std::unique_ptr<catalog::Catalog>> open_catalog(const fs::path& database) {
-    // Ctrl+C ends the program as always: what is resolved stays.
+    // Ctrl+C ends the program as usual: attributes that are resolved stay resolved.
     ProgressBar bar("Resolving attributes by the changed taxonomy");
     catalog::OpenOptions options;
     options.progress = [&bar](std::size_t done, std::size_t total) {

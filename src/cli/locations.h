@@ -14,10 +14,10 @@ namespace embody::cli {
 std::filesystem::path data_folder();
 /// The built front-end: $EMBODY_STUDIO, or `studio/dist` of the source tree.
 std::filesystem::path studio_folder();
-/// The user's own scenes: beside the default database.
+/// Folder of the user's own scenes, next to the default database.
 std::filesystem::path saved_scenes_folder();
 
-/// The database with our taxonomy.
+/// Opens the database with the taxonomy of data_folder().
 Result<std::unique_ptr<catalog::Catalog>> open_catalog(const std::filesystem::path& database);
 
 }  // namespace embody::cli

@@ -14,7 +14,7 @@ namespace embody::cli {
 
 namespace {
 
-/// Why standard output did not take something first; 0: it took everything.
+/// errno of the first failed write to standard output; 0: everything was written.
 int output_failure = 0;
 
 }  // namespace
@@ -39,7 +39,7 @@ int report(const Error& error) {
 }
 
 void print_json(const nlohmann::json& value) {
-    // JSON takes the escapes that printable_lines() makes of what dump() leaves: those from U+007F on.
+    // printable_lines() escapes what dump() does not, code points from U+007F on; its escapes are valid in JSON, too.
     write_text(stdout, printable_lines(value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) + '\n');
 }
 
@@ -54,7 +54,7 @@ std::size_t text_width(std::string_view text) {
 std::string shortened(std::string_view text, std::size_t width) {
     std::string line = printable(text);
     if (text_width(line) <= width) return line;
-    // Whole code points are cut from the end.
+    // Removes whole code points from the end.
     while (!line.empty() && text_width(line) >= width) {
         while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xC0) == 0x80) line.pop_back();
         if (!line.empty()) line.pop_back();

@@ -8,7 +8,7 @@
 
 namespace embody::cli {
 
-/// The scene of a file, a built-in scene of that name, or a demo or saved scene of that name, in this order.
+/// Looks the scene up as a file, then as a built-in scene, then as a demo or saved scene of that name.
 Result<scene::Document> find_scene(const std::string& file_or_name);
 
 }  // namespace embody::cli

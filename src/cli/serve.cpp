@@ -13,10 +13,10 @@
 namespace embody::cli {
 namespace {
 
-/// What still works when the server is told to end has this time; within twice as long the process has ended.
+/// Time for what is still running when the server is told to end; the process has ended within twice that time.
 constexpr auto longest_end = std::chrono::milliseconds(1200);
 
-/// Asks the desktop to show the address; there may be none, and that is no error.
+/// Asks the desktop to open the address; no desktop is no error.
 void open_in_browser(const std::string& url) {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
     std::string program = "xdg-open";
@@ -40,11 +40,11 @@ int run_serve(const ServeArguments& arguments) {
     options.scene.session.saved_scenes = saved_scenes_folder();
     options.scene.session.demo_scenes = data_folder() / "scenes";
     options.scene.open_scene = arguments.scene.value_or("furnished_room");
-    // The server opens it again; this shows how long it takes where the taxonomy has changed.
+    // The server opens it again; this call shows the progress where the taxonomy has changed.
     if (auto catalog = open_catalog(arguments.database); !catalog) return report(catalog.error());
     auto server = server::Server::start(options);
     if (!server && !arguments.scene) {
-        // The scene that opens by itself needs models; without them an empty one is better than no Studio.
+        // The default scene needs models; without them an empty scene is better than no Studio.
         const Error no_scene = server.error();
         options.scene.open_scene.clear();
         server = server::Server::start(options);
@@ -58,7 +58,7 @@ int run_serve(const ServeArguments& arguments) {
     (*server)->run();
     const auto ended = (*server)->end_within(longest_end);
     if (ended.ok() && *ended) return exit_ok;
-    // What does not end is left to the system: the scene is kept, and the database is whole at any moment.
+    // What is still running is left to the system: the scene is saved, and the database is consistent at any moment.
     const int code = ended ? int{exit_ok} : report(ended.error());
     std::fflush(nullptr);
     std::_Exit(code);

@@ -19,7 +19,7 @@ Result<AttributeChange> parse_assignment(const std::string& assignment) {
     return AttributeChange{name, std::move(*value)};
 }
 
-// The words after the command: the first names the model, unless many are chosen.
+// The first word after the command names the model, unless many are chosen.
 Result<catalog::Catalog::ModelChoice> chosen_models(const catalog::Catalog& catalog, const ManyArguments& many,
                                                     std::vector<std::string>& words) {
     if (many.are_chosen()) {
@@ -34,14 +34,14 @@ Result<catalog::Catalog::ModelChoice> chosen_models(const catalog::Catalog& cata
     return catalog::Catalog::ModelChoice(std::vector{model->id});
 }
 
-// One model is shown after its change, as `embody show` prints it; of many the number is said.
+// Prints one model after its change as `embody show` does; for many models prints their number.
 int change(const std::filesystem::path& database, const ManyArguments& many, std::vector<std::string> words, bool json,
            const std::function<Result<std::vector<AttributeChange>>(const std::vector<std::string>&)>& read) {
     auto catalog = open_catalog(database);
     if (!catalog) return report(catalog.error());
     const auto models = chosen_models(**catalog, many, words);
     if (!models) return report(models.error());
-    // All are read before the first is written: a slip in the last one changes nothing.
+    // All changes are read before the first is written: a mistake in the last one changes nothing.
     const auto changes = read(words);
     if (!changes) return report(changes.error());
 

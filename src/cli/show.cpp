@@ -43,7 +43,8 @@ void print_entry(const AttributeEntry& entry) {
                entry.source);
 }
 
-// The decomposition that collides; none where something else does. Where the import has not made it, it is made now.
+// The convex parts that the model collides by; none where something else is its collision shape. Computed now where the
+// import has not done so.
 Result<std::optional<catalog::ConvexParts>> collision_parts(const catalog::Catalog& catalog, std::int64_t id,
                                                             const attributes::AttributeSet& set) {
     if (set.word("collision_shape", "") != "decomposition") return std::optional<catalog::ConvexParts>();
@@ -60,7 +61,8 @@ void print_parts(const catalog::ConvexParts& parts) {
         parts.hulls.size(), parts.hulls.size() == 1 ? "" : "s", 1e3 * parts.concavity, 1e3 * parts.hull_concavity);
 }
 
-// What a soft thing is computed on, or why it cannot be soft. Made now where the import has not made it.
+// The tetrahedra that a soft model is simulated with, or the reason why it cannot be soft. Computed now where the
+// import has not done so.
 std::optional<Result<catalog::SoftMesh>> soft_mesh(const catalog::Catalog& catalog, std::int64_t id,
                                                    const attributes::AttributeSet& set) {
     if (matter_of(set) != attributes::Matter::solid) return std::nullopt;

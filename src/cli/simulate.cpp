@@ -18,14 +18,14 @@
 namespace embody::cli {
 namespace {
 
-/// Of the rigid bodies, over all steps (docs/physics/energy.md).
+/// Energy of the rigid bodies, over all steps (docs/physics/energy.md).
 struct EnergySummary {
     std::optional<physics::Conserved> start;
     physics::Conserved end;
     std::array<double, static_cast<std::size_t>(physics::StepCause::count)> work{};  ///< J, by cause
     double unexplained = 0;                                                          ///< J
-    double between_steps = 0;                        ///< given and taken by actions and commands, J
-    double largest_gain = 0, largest_gain_time = 0;  ///< of what one step does not explain, J and s
+    double between_steps = 0;                        ///< energy that actions and commands add or take away, J
+    double largest_gain = 0, largest_gain_time = 0;  ///< largest unexplained energy of one step, J, and its time, s
 
     void add(const physics::StepReport& report) {
         if (!report.account) return;
@@ -41,7 +41,7 @@ struct EnergySummary {
     }
 };
 
-/// What a person wants to know at the end.
+/// Results that are printed at the end.
 struct Summary {
     std::uint64_t steps = 0;
     double simulated = 0, wall = 0;
@@ -50,11 +50,11 @@ struct Summary {
     bool paused = false;
     std::size_t actions = 0;
     EnergySummary energy;
-    std::vector<std::string> notes;   ///< what was not simulated as its kind says, at the start
-    std::uint64_t zones_missing = 0;  ///< in the trace
+    std::vector<std::string> notes;   ///< at the start: what is not simulated as its entity's kind says
+    std::uint64_t zones_missing = 0;  ///< zones that are missing in the trace
 };
 
-/// The files that a run writes, as far as they were asked for.
+/// The files that a run writes; null where not asked for.
 struct Outputs {
     std::unique_ptr<scene::Recorder> recorder;
     std::unique_ptr<ZoneTrace> trace;
@@ -205,7 +205,7 @@ int run_simulate(const SimulateArguments& arguments) {
     auto simulation = scene::Simulation::create(*document, catalog->get());
     if (!simulation) return report(scene::in_place(arguments.scene, simulation.error()));
 
-    // Ctrl+C ends the run; what was recorded until then is written in whole lines.
+    // Ctrl+C ends the run; what was recorded before is written in whole lines.
     watch_interrupts();
     Outputs outputs;
     if (auto opened = outputs.open(arguments, *document, **simulation); !opened) return report(opened.error());

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int process = 1;  // of the trace; there is one
+constexpr int process = 1;  // process id in the trace; there is only one
 
 double microseconds(ZoneClock::duration time) { return std::chrono::duration<double, std::micro>(time).count(); }
 

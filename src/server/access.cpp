@@ -19,7 +19,7 @@ bool names_loopback(std::string_view host) {
     return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
 }
 
-/// Equal in a time that does not tell how many characters were right.
+/// Compares in a time that does not depend on the number of equal characters.
 bool equal_secrets(std::string_view a, std::string_view b) {
     unsigned difference = a.size() == b.size() ? 0 : 1;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -40,8 +40,8 @@ std::string cookie_value(std::string_view cookies, std::string_view name) {
     return {};
 }
 
-/// Whether a page of another site made the browser ask: by Origin, which comes with WebSocket upgrades, POSTs and what
-/// a script fetches, or by Sec-Fetch-Site, which comes with pictures, too. Programs that are no browser send neither.
+/// Whether a page of another site made the browser ask. Origin tells it for WebSocket upgrades, POSTs and requests of
+/// scripts; Sec-Fetch-Site for pictures, too. Programs that are no browser send neither.
 bool is_foreign(const HttpRequest& request) {
     if (!request.origin.empty() && request.origin != "http://" + request.host &&
         request.origin != "https://" + request.host)
@@ -49,7 +49,7 @@ bool is_foreign(const HttpRequest& request) {
     return !request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none";
 }
 
-/// The user clicked on a link: the answer takes the place of the other page.
+/// Whether the user clicked on a link: the answer replaces the other page.
 bool follows_link(const HttpRequest& request) {
     return request.origin.empty() && request.fetch_mode == "navigate" && request.fetch_dest == "document";
 }

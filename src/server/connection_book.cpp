@@ -9,10 +9,11 @@
 namespace embody::server {
 namespace {
 
-/// For the scene's files, the database in each thread that has it open, uploads, import workers and their pipes.
+/// Descriptors for the scene's files, the database in each thread that has it open, uploads, import workers and their
+/// pipes.
 constexpr std::size_t reserved_descriptors = 128;
 constexpr std::size_t fewest_connections = 8;
-/// More than a server of 512 connections ever needs; some systems allow a thousand million.
+/// More than a server of 512 connections ever needs; some systems allow 10⁹.
 constexpr rlim_t enough_descriptors = 4096;
 
 }  // namespace
@@ -31,7 +32,7 @@ std::size_t raise_descriptor_limit() {
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 0;
     rlimit raised = limit;
     raised.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, enough_descriptors));
-    // Where it is refused, the limit there is counts.
+    // Where the system refuses to raise the limit, the present limit holds.
     if (setrlimit(RLIMIT_NOFILE, &raised) == 0) limit = raised;
     return static_cast<std::size_t>(std::min<rlim_t>(limit.rlim_cur, enough_descriptors));
 }
@@ -46,7 +47,7 @@ ConnectionBook::Place::~Place() {
     if (entry != book_->entries_.end()) book_->remove(entry);
 }
 
-// Who had to make room has no entry any more.
+// A connection that had to make room has no entry any more.
 void ConnectionBook::Place::be_idle(std::function<void()> give_up) {
     const std::lock_guard lock(book_->mutex_);
     const auto entry = book_->entries_.find(number_);
@@ -92,7 +93,7 @@ std::optional<ConnectionBook::Place> ConnectionBook::admit(const std::string& ad
     return Place(*this, number);
 }
 
-// Of this address, or of any; the end where none is idle.
+// The connection that has been idle for longest, of this address or of any; the end where none is idle.
 ConnectionBook::Entries::iterator ConnectionBook::idlest(const std::string* address) {
     auto found = entries_.end();
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {

@@ -14,34 +14,35 @@ namespace embody::server {
 struct ConnectionLimits {
     std::size_t all = 512;
     std::size_t per_address = 256;  ///< of one client's address
-    std::size_t viewers = 128;      ///< of all, those that are WebSockets
+    std::size_t viewers = 128;      ///< WebSockets, of all addresses
 };
 
-/// The limits where a process may have so many descriptors open: a reserve stays for scenes, models and imports.
+/// The limits of a process that may have so many descriptors open; some descriptors stay reserved for scenes, models
+/// and imports.
 ConnectionLimits limits_for_descriptors(std::size_t descriptors);
 
-/// Lets this process open as many descriptors as the system allows, and tells how many that are.
+/// Raises this process's limit of open descriptors as far as the system allows, and returns the new limit.
 std::size_t raise_descriptor_limit();
 
-/// Who is connected. Where a limit is reached the connection that has been idle for longest makes room; where none is
-/// idle the newcomer is refused. Thread-safe; outlives its places.
+/// Counts the connections. Where a limit is reached, the connection that has been idle for longest is closed; where
+/// none is idle, the new connection is refused. Thread-safe; outlives its places.
 class ConnectionBook {
 public:
     explicit ConnectionBook(ConnectionLimits limits) : limits_(limits) {}
     ConnectionBook(const ConnectionBook&) = delete;
     ConnectionBook& operator=(const ConnectionBook&) = delete;
 
-    /// A connection's entry; ends with it.
+    /// A connection's entry, removed with this object.
     class Place {
     public:
         Place(Place&& other) noexcept;
         Place& operator=(Place&&) = delete;
         ~Place();
-        /// It waits for the client to ask. `give_up` closes it, to make room for another.
+        /// The connection waits for the client's next request. `give_up` closes it, to make room for another.
         void be_idle(std::function<void()> give_up);
-        /// What the client asked for is in hand.
+        /// A request of the client is being answered.
         void be_busy();
-        /// Whether it may become a WebSocket; if so it counts as one from now on.
+        /// Whether the connection may become a WebSocket; if so, it counts as one from now on.
         [[nodiscard]] bool become_viewer();
 
     private:
@@ -51,7 +52,7 @@ public:
         std::uint64_t number_;
     };
 
-    /// Nothing where the limits refuse it.
+    /// Empty where the limits refuse the connection.
     [[nodiscard]] std::optional<Place> admit(const std::string& address);
 
 private:

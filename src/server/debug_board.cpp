@@ -18,7 +18,7 @@ constexpr physics::DebugDrawOptions options_of(std::uint32_t flags) {
     return {.flags = flags, .max_lines = 60'000, .max_points = 120'000};
 }
 
-/// Lines and points by what they stand for.
+/// Collects lines and points by their meaning.
 class FrameDraw final : public physics::DebugDraw {
 public:
     void line(Vec3 from, Vec3 to, physics::DebugColor color) override {
@@ -57,7 +57,7 @@ private:
     static void append_place(std::string& bytes, Vec3 place) {
         for (int k = 0; k < 3; ++k) append(bytes, static_cast<float>(place[k]));
     }
-    // Its key is the batch's first four bytes: meaning, whether it is dim, number.
+    // The key is the first four bytes of the batch: meaning, whether it is dim, number.
     Batch& batch_of(physics::DebugColor color) {
         const std::uint32_t dim = color.is_dim ? 1 : 0, number = color.number;
         return batches_[static_cast<std::uint32_t>(color.meaning) | dim << 8 | number << 16];
@@ -109,7 +109,7 @@ bool DebugBoard::is_wanted() const {
 }
 
 void DebugBoard::publish(const scene::Session& session) {
-    // Each wish is drawn once, however many clients have it, and without the lock.
+    // Each set of flags is drawn once, however many clients chose it, and without holding the lock.
     std::map<std::uint32_t, std::shared_ptr<const std::string>> frames;
     {
         const std::lock_guard lock(mutex_);

@@ -13,16 +13,16 @@
 
 namespace embody::server {
 
-/// What each client wants to see of the solver's inside, and the newest frame of it (docs/protocol.md, "Debug frames").
-/// The scene thread chooses and publishes; the network thread takes.
+/// What of the solver's internal state each client has chosen to see, and the newest frame of it (docs/protocol.md,
+/// "Debug frames"). The scene thread chooses and publishes; the network thread takes.
 class DebugBoard {
 public:
-    /// The command debug.draw: from now on the client sees what its `show` names.
+    /// The command debug.draw: from now on the client receives what `show` of its parameters names.
     Result<void> choose(scene::ClientId client, const nlohmann::json& params);
-    /// A client has left.
+    /// Removes a client that has left.
     void forget(scene::ClientId client);
     [[nodiscard]] bool is_wanted() const;
-    /// Draws anew for all that want it. Those that have not taken the last frame get this one instead.
+    /// Draws a new frame for all clients that chose something; it replaces a frame that a client has not taken.
     void publish(const scene::Session& session);
     /// The client's newest frame, once; null: none.
     std::shared_ptr<const std::string> take(scene::ClientId client);

@@ -45,8 +45,8 @@ HttpResponse error_response(unsigned status, std::string_view where, std::string
 }
 
 const std::map<std::string, std::string>& protective_headers() {
-    // The decoder of meshes (meshopt) is WebAssembly; textures of models are blobs that are fetched; the page's
-    // icon is in its address.
+    // The page needs these sources: the decoder of meshes (meshopt) is WebAssembly; textures of models are fetched
+    // blobs; the page's icon is a data URL.
     static const std::map<std::string, std::string> headers = {
         {"Content-Security-Policy",
          "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; "

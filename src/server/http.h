@@ -12,7 +12,8 @@ struct HttpRequest {
     std::string method;                               ///< "GET", "HEAD", "POST"
     std::string target;                               ///< path and query as sent
     std::string host, origin, cookie, if_none_match;  ///< header values; empty where missing
-    /// Sec-Fetch-Site, -Mode and -Dest: which page made a browser ask, and for what; empty: no browser asks.
+    /// Sec-Fetch-Site, -Mode and -Dest: the page and the purpose of a browser's request; empty: the sender is no
+    /// browser.
     std::string fetch_site, fetch_mode, fetch_dest;
 };
 
@@ -27,8 +28,8 @@ struct HttpResponse {
 HttpResponse error_response(unsigned status, std::string_view where, std::string_view why,
                             std::string_view remedy = {});
 
-/// What every answer carries, so that a browser runs nothing but the Studio's own files, shows it in no other page, and
-/// hands nothing to one.
+/// Headers of every answer: a browser runs nothing but the Studio's own files, shows the page inside no other page, and
+/// passes no data on to another page.
 const std::map<std::string, std::string>& protective_headers();
 
 /// Path of a target, percent-decoded; empty where the encoding is broken or holds a NUL.

@@ -40,14 +40,14 @@ Result<std::string> ImportRequests::file_name(const HttpRequest& request) {
 
 void ImportRequests::start(std::shared_ptr<Upload> upload, std::function<void(HttpResponse)> respond) {
     queue_.post([this, upload = std::move(upload), respond = std::move(respond)]() mutable {
-        // What the libraries throw (memory, files) fails this import and nothing else.
+        // An exception of a library (memory, files) fails this import and nothing else.
         HttpResponse response;
         try {
             response = import(*upload);
         } catch (const std::exception& thrown) {
             response = error_response(500, "import", std::string("failed: ") + thrown.what());
         }
-        // Its place is free before the client hears that it is done.
+        // The upload is removed before the client hears that the import is done, so that its next upload finds room.
         upload.reset();
         respond(std::move(response));
     });

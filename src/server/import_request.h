@@ -15,18 +15,18 @@
 
 namespace embody::server {
 
-/// Imports of uploaded files (POST /import?name=…), one after the other on a thread of their own.
+/// Imports of uploaded files (POST /import?name=…), one after the other on one thread.
 class ImportRequests {
 public:
     ImportRequests(std::filesystem::path database, std::filesystem::path taxonomy_folder);
 
     static bool is_import(const HttpRequest& request);
-    /// The name that the request gives its file, without any folder; the error is for who asked.
+    /// The file's name from the request, without any folder; the error is for the client.
     static Result<std::string> file_name(const HttpRequest& request);
     /// `respond` is called once, on the import thread, unless the server stops before.
     void start(std::shared_ptr<Upload> upload, std::function<void(HttpResponse)> respond);
 
-    /// The import in hand ends after the model that is being read; those that wait are not begun.
+    /// The current import ends after the model that is being read; imports that wait are not started.
     void request_stop();
     bool wait_ended(std::chrono::steady_clock::time_point until) { return queue_.wait_ended(until); }
 
@@ -35,7 +35,7 @@ private:
 
     std::filesystem::path database_, taxonomy_folder_;
     std::atomic<bool> stop_ = false;
-    WorkQueue queue_{1};  ///< last: it ends before what its work uses
+    WorkQueue queue_{1};  ///< last: its threads end before the members they use are destroyed
 };
 
 }  // namespace embody::server

@@ -39,7 +39,7 @@ const std::map<std::string, std::string>& content_types() {
 
 bool is_read(const HttpRequest& request) { return request.method == "GET" || request.method == "HEAD"; }
 
-/// "/models/17/geometry.glb" → 17 and "geometry.glb"; id 0 where it is something else.
+/// "/models/17/geometry.glb" → 17 and "geometry.glb"; id 0 where the path is no file of a model.
 struct ModelPath {
     std::int64_t id = 0;
     std::string part;
@@ -129,14 +129,14 @@ HttpResponse Routes::answer_model(const HttpRequest& request, const std::string&
     HttpResponse response;
     response.content_type = thumbnail ? "image/png" : "model/gltf-binary";
     response.body.assign(bytes->begin(), bytes->end());
-    // With the content's hash in the address, what lies there never changes.
+    // With the content's hash in the address, the content at that address never changes.
     const bool versioned = !query_parameter(request.target, "v").empty();
     response.headers["Cache-Control"] = versioned ? "public, max-age=31536000, immutable" : "no-cache";
     return response;
 }
 
 HttpResponse Routes::answer_file(const std::string& path) const {
-    // Resolve links and dots, then insist that the file lies inside the front-end's folder.
+    // Resolves links and dots, then checks that the file lies inside the front-end's folder.
     std::error_code error;
     const fs::path root = fs::weakly_canonical(studio_folder_, error);
     const fs::path file = fs::weakly_canonical(root / (path == "/" ? "index.html" : path.substr(1)), error);

@@ -14,26 +14,26 @@
 
 namespace embody::server {
 
-/// Answers of the HTTP face (docs/protocol.md) but imports, which take long and have a thread of their own.
+/// Answers all HTTP requests (docs/protocol.md) but imports, which take long and run on a thread of their own.
 /// Thread-safe.
 class Routes {
 public:
-    /// `catalogs`: the same one, opened once for each thread that answers. `studio_folder`: the built front-end.
-    /// `scene_title`: of the open document, from any thread.
+    /// `catalogs`: the same database, opened once for each thread that answers. `studio_folder`: the built front-end.
+    /// `scene_title`: title of the open document; may be called from any thread.
     Routes(std::vector<std::unique_ptr<catalog::Catalog>> catalogs, std::filesystem::path studio_folder,
            std::function<std::string()> scene_title);
 
-    /// Whether it asks for the Studio's own page and files, not for what is in the scene or the database.
+    /// Whether the request is for the Studio's own page and files, not for data of the scene or the database.
     static bool is_page(const HttpRequest& request);
-    /// Whether it asks for the open document, which answer() does not have.
+    /// Whether the request is for the open document, which answer() does not have.
     static bool is_scene(const HttpRequest& request);
 
-    /// Never fails: what is wrong becomes a response with its status.
+    /// Never fails: an error becomes a response with its status.
     HttpResponse answer(const HttpRequest& request) const;
     HttpResponse answer_scene(const scene::Document& document) const;
 
 private:
-    /// A catalogue for as long as this lives; there are as many as threads that ask.
+    /// Reserves a catalogue while the object lives; there are as many catalogues as threads that answer.
     class Loan;
     HttpResponse answer_health() const;
     HttpResponse answer_model(const HttpRequest& request, const std::string& path) const;

@@ -24,13 +24,13 @@ using nlohmann::json;
 
 constexpr auto statistics_period = std::chrono::milliseconds(250);
 constexpr auto autosave_period = std::chrono::seconds(20);
-/// What other programs change in the database is seen after this time at most.
+/// Longest time until a change of the database by another program is seen.
 constexpr auto catalog_period = std::chrono::seconds(1);
-/// After commands the states are published so that this takes one part in so many of the time.
+/// After publishing, the next pause is at least so many times as long as the publishing took.
 constexpr int publish_share = 4;
-/// Work that takes longer tells how far it is, as often.
+/// A command that takes longer reports its progress, with this period.
 constexpr auto progress_period = std::chrono::milliseconds(150);
-/// A machine that cannot keep up runs the scene slower instead of falling ever further behind.
+/// A machine that cannot keep up runs the scene slower than real time once it is so far behind.
 constexpr double most_seconds_behind = 0.1;
 
 std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
@@ -40,8 +40,7 @@ json failed(const json& id, const Error& error) {
         {"id", id}, {"ok", false}, {"error", {{"where", error.where}, {"why", error.why}, {"remedy", error.remedy}}}};
 }
 
-/// A client's command, or that it has left, or a wish for the document (then `take_document` is set and the rest is
-/// not).
+/// A client's command, or the news that it has left, or a request for the document (then only `take_document` is set).
 struct Message {
     ClientId client = 0;
     std::string text;
@@ -69,11 +68,11 @@ struct SceneThread::State {
     std::vector<scene::EntityState> scratch;
     Clock::time_point statistics_due{}, autosave_due{}, catalog_due{}, statistics_since{};
     Clock::time_point next_publish{}, next_debug{};
-    bool publish_is_due = false;       ///< something may have changed since
-    ClientId served = 0;               ///< whose command is in hand
-    Clock::time_point progress_due{};  ///< when it tells next how far it is
+    bool publish_is_due = false;       ///< something may have changed since the last publish()
+    ClientId served = 0;               ///< the client whose command is being executed
+    Clock::time_point progress_due{};  ///< time of the next progress report
     double statistics_time = 0;        ///< simulated time at statistics_since
-    bool statistics_rated = false;     ///< it plays since then
+    bool statistics_rated = false;     ///< it has been playing since then
 
     Result<void> open_safely();
     Result<void> open();
@@ -112,7 +111,7 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
         return state.tell_progress(done, total);
     };
     state.listener = std::move(listener);
-    // The catalogue and the session are opened on the thread that uses them; its first result is whether that worked.
+    // The catalogue and the session are opened on the thread that uses them; this promise says whether that worked.
     std::promise<Result<void>> opened;
     std::future<Result<void>> result = opened.get_future();
     state.thread = std::thread([&state, opened = std::move(opened)]() mutable {
@@ -210,7 +209,7 @@ void SceneThread::State::run() {
     Clock::time_point due = Clock::now();
     autosave_due = due + autosave_period;
     for (;;) {
-        // Wait for a command, or for the time of the next step.
+        // Wait for a command, or until the next step is due.
         std::deque<Message> taken;
         {
             std::unique_lock lock(mutex);
@@ -239,7 +238,7 @@ void SceneThread::State::run() {
             autosave();
         }
     }
-    // Nothing is lost when the server ends.
+    // Save when the server ends, so that nothing is lost.
     autosave();
 }
 
@@ -260,13 +259,13 @@ bool SceneThread::State::tell_progress(std::size_t done, std::size_t total) {
     return !stop_is_asked();
 }
 
-// By the server's end.
+// The server ends.
 bool SceneThread::State::stop_is_requested() const {
     const std::lock_guard lock(mutex);
     return stop;
 }
 
-// By the server's end, or by the client's next command.
+// The server ends, or the client's next command asks to stop.
 bool SceneThread::State::stop_is_asked() {
     const std::lock_guard lock(mutex);
     return stop || std::any_of(messages.begin(), messages.end(), [this](const Message& message) {
@@ -296,7 +295,7 @@ void SceneThread::State::play_until(Clock::time_point& due) {
     try {
         session->step();
     } catch (const std::exception& thrown) {
-        // The document is as it was: it can still be edited and saved.
+        // The document is unchanged: it can still be edited and saved.
         (void)session->execute("simulation.pause", {});
         broadcast_message("error", std::string("The simulation could not go on: ") + thrown.what());
     }
@@ -313,7 +312,7 @@ void SceneThread::State::tell_statistics(Clock::time_point now) {
     json statistics = session->statistics();
     const double wall = std::chrono::duration<double>(now - statistics_since).count();
     const double simulated = session->simulated_time() - statistics_time;
-    // Of single steps it would say how fast a person presses a key.
+    // While paused, single steps would show how fast a person presses a key.
     const bool has_rate = statistics_rated && wall > 0 && simulated >= 0;
     statistics["real_time_factor"] = has_rate ? simulated / wall : 0.0;
     statistics_rated = session->playing();
@@ -334,14 +333,14 @@ void SceneThread::State::handle(const Message& message) {
     served = message.client;
     progress_due = Clock::now() + progress_period;
     const json reply = answer(message.text);
-    // Events first, so that a client that gets its reply has already heard what the command did.
+    // Events first, so that a client that receives its reply already knows what the command did.
     tell_events();
     listener.reply(message.client, dump(reply));
     if (session->playing() != was_playing || session->simulated_steps() != step_before) tell_statistics(Clock::now());
 }
 
 json SceneThread::State::answer(const std::string& text) {
-    // What the libraries throw (memory, files) fails this command and nothing else.
+    // An exception of a library (memory, files) fails this command and nothing else.
     try {
         const Result<json> request = scene::parse_json(text, "message");
         if (!request) return failed(nullptr, request.error());
@@ -387,7 +386,7 @@ void SceneThread::State::tell_events() {
     publish_if_due();
 }
 
-// While it plays this too takes a share of the time; else publish() comes as seldom as it may.
+// While the scene plays, drawing too is limited to a fraction of the time; else publish() limits it.
 void SceneThread::State::publish_debug() {
     const Clock::time_point began = Clock::now();
     if (!debug.is_wanted() || (session->playing() && began < next_debug)) return;
@@ -395,7 +394,7 @@ void SceneThread::State::publish_debug() {
     next_debug = Clock::now() + publish_share * (Clock::now() - began);
 }
 
-// The walk over all entities takes a share of the time, however many commands come one after the other.
+// The walk over all entities is limited to a fraction of the time, however many commands follow each other.
 void SceneThread::State::publish_if_due() {
     if (publish_is_due && Clock::now() >= next_publish) publish(false);
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The transport: the only file that sees Boost.Beast, which takes most of this layer's compile time; that is why it is
-// longer than others. One network thread runs the io_context and never waits: the scene has its own thread
-// (scene_thread.h), so have imports, and what reads the database, the scene or files is done by work queues, which post
-// their answers back.
+// The transport. This file is longer than others because it is the only one that includes Boost.Beast, which takes most
+// of this layer's compile time. One network thread runs the io_context and never waits: the scene has its own thread
+// (scene_thread.h), and so have imports; work queues read the database, the scene and files, and post the answers back.
 #include "server/server.h"
 
 #include <atomic>
@@ -42,41 +41,41 @@ using tcp = asio::ip::tcp;
 using beast::error_code;
 using Clock = std::chrono::steady_clock;
 
-/// A connection that asks for nothing, or does not finish saying what, is closed.
+/// A connection that sends no request, or does not complete one, for this time is closed.
 constexpr auto longest_silence = std::chrono::seconds(30);
-/// An upload of which nothing more comes, and one that takes too long altogether.
+/// An upload ends after so long without new bytes, or so long in all.
 constexpr auto longest_stall = std::chrono::seconds(20);
 constexpr auto longest_upload = std::chrono::minutes(10);
-constexpr auto longest_answer = std::chrono::minutes(2);  ///< until the client has read it
-/// A viewer that was not heard for two of these, though it was asked whether it is there, has gone.
+constexpr auto longest_answer = std::chrono::minutes(2);  ///< until the client has read the answer
+/// A viewer that does not answer a ping for two of these periods has gone.
 constexpr auto viewer_watch_period = std::chrono::seconds(150);
 
-/// Where no descriptor is left; and how often that is told.
+/// After a failed accept(), mostly for lack of descriptors: the pause, and the period of messages about it.
 constexpr auto accept_pause = std::chrono::milliseconds(100);
 constexpr auto accept_failure_period = std::chrono::seconds(10);
 
-/// Each with the database open: a large model that is read keeps nobody else waiting.
+/// Each thread has the database open, so that reading a large model does not delay other requests.
 constexpr std::size_t route_threads = 2;
 
 constexpr std::uint64_t largest_other_body = 64 << 10;
-constexpr std::size_t piece_bytes = 64 << 10;                   ///< of an upload, from the socket to the file
-constexpr std::size_t largest_command = std::size_t{64} << 20;  ///< a whole scene may come as one
-/// Of one client that waits behind the message being sent: a client that reads nothing is let go.
+constexpr std::size_t piece_bytes = 64 << 10;  ///< size of the pieces of an upload, from the socket to the file
+constexpr std::size_t largest_command = std::size_t{64} << 20;  ///< a whole scene may arrive as one command
+/// Bytes that wait behind the message being sent to one client; a client that reads nothing is disconnected.
 constexpr std::size_t most_unsent_text = std::size_t{256} << 20;
-/// Of one client: commands that wait for their reply, and replies that it has not read. Its next commands stay in the
-/// socket until there is less, so that a flood fills no memory.
+/// Limits of one client: commands that wait for their reply, and replies that it has not read. Its next commands stay
+/// in the socket until there are fewer, so that a flood of commands does not fill the memory.
 constexpr std::size_t most_waiting_commands = 256;
 constexpr std::size_t most_waiting_bytes = largest_command;
 constexpr std::size_t most_unread_replies = std::size_t{1} << 20;
-/// Of all clients together: commands that wait or are being received. Who brings more is let go.
+/// Bytes of all clients' commands that wait or are being received; a client that sends more is disconnected.
 constexpr std::size_t most_command_bytes = std::size_t{512} << 20;
 
 class WebSocketClient;
 
-/// What connections share; lives as long as the server, which outlives them.
+/// State that connections share; lives as long as the server, which outlives them.
 struct Shared {
     ConnectionBook connections{limits_for_descriptors(raise_descriptor_limit())};
-    std::map<ClientId, std::shared_ptr<WebSocketClient>> clients;  ///< keeps those that are not being read
+    std::map<ClientId, std::shared_ptr<WebSocketClient>> clients;  ///< keeps clients alive that are not being read
     ClientId next_client = 1;
     std::size_t command_bytes = 0;
     asio::io_context io;
@@ -100,7 +99,7 @@ void report_failure(const std::exception& thrown) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------
-// A browser or script on the WebSocket.
+// A browser or script that is connected by WebSocket.
 
 using SharedText = std::shared_ptr<const std::string>;
 
@@ -141,7 +140,7 @@ public:
 
     void send_text(SharedText text) {
         guarded([&] {
-            // However large the first one is, it is on its way.
+            // The limit does not count the message being sent, so a first one of any size is accepted.
             if (!texts_.empty() && unsent_ + text->size() > most_unsent_text) return close();
             unsent_ += text->size();
             texts_.push_back(std::move(text));
@@ -149,7 +148,7 @@ public:
         });
     }
 
-    /// Newest states, as soon as nothing else is being written.
+    /// Sends the newest states as soon as nothing else is being written.
     void send_frame() {
         guarded([&] {
             frame_wanted_ = true;
@@ -174,7 +173,7 @@ public:
     }
 
 private:
-    /// What fails (memory) ends this client and nothing else.
+    /// An exception (memory) ends this client and nothing else.
     template <class Work>
     void guarded(const Work& work) {
         try {
@@ -185,13 +184,14 @@ private:
         }
     }
 
-    // Whoever calls this holds the client by another pointer than that of the list.
+    // The caller holds the client by another pointer than that of the map.
     void leave() {
         watch_.cancel();
         if (shared_.clients.erase(id_) > 0) shared_.scene->forget(id_);
     }
 
-    // Asks now and then whether the client is there, but for one that is not being read: its answer would not be heard.
+    // Pings the client from time to time, except while it is not being read, because its answer would not be read
+    // either.
     void watch() {
         watch_.expires_after(viewer_watch_period);
         watch_.async_wait([weak = weak_from_this()](error_code error) {
@@ -228,7 +228,7 @@ private:
                                 });
     }
 
-    // A part of a message, or its last one.
+    // Receives a part of a message, or its last one.
     void take(std::size_t size) {
         was_heard_ = true;
         held_bytes_ += size;
@@ -249,7 +249,7 @@ private:
         shared_.command_bytes -= bytes;
     }
 
-    // The newest states, or the newest drawing of the solver's inside; null: nothing new.
+    // The newest states, or the newest debug frame; null: nothing new.
     SharedText next_frame() {
         if (std::exchange(frame_wanted_, false)) {
             StateBoard::Frame frame = shared_.scene->frame_since(seen_);
@@ -259,7 +259,7 @@ private:
         return shared_.scene->take_debug_frame(id_);
     }
 
-    // One write at a time: texts in order, frames only when no text waits and always the newest states.
+    // One write at a time: texts in order; frames only when no text waits, and always the newest states.
     void write() {
         if (outgoing_) return;
         if (!texts_.empty()) {
@@ -288,11 +288,11 @@ private:
     ClientId id_;
     beast::flat_buffer buffer_;
     std::deque<std::size_t> waiting_;  ///< sizes of the commands that have no reply yet
-    std::size_t waiting_bytes_ = 0;    ///< of these
-    std::size_t held_bytes_ = 0;       ///< with what is being received
+    std::size_t waiting_bytes_ = 0;    ///< their total
+    std::size_t held_bytes_ = 0;       ///< the same and what is being received
     bool read_pauses_ = false;
     std::deque<SharedText> texts_;
-    std::size_t unsent_ = 0;  ///< bytes of these
+    std::size_t unsent_ = 0;  ///< bytes of all queued texts
     SharedText outgoing_;     ///< being written
     bool frame_wanted_ = false;
     std::uint64_t seen_ = 0;
@@ -302,7 +302,7 @@ private:
 };
 
 // ---------------------------------------------------------------------------------------------------------------------------
-// A connection that speaks HTTP, until it becomes a WebSocket.
+// A connection that uses HTTP, until it becomes a WebSocket.
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 public:
@@ -311,7 +311,7 @@ public:
 
     void read_header() {
         header_.emplace();
-        // The whole header first: how large a body may be depends on what is asked.
+        // The header first: the limit of the body's size depends on the request.
         header_->body_limit(std::numeric_limits<std::uint64_t>::max());
         stream_.expires_after(longest_silence);
         may_be_given_up();
@@ -359,7 +359,7 @@ private:
 
     // Uploads -----------------------------------------------------------------------------------------------------
 
-    // Piece by piece to a file, which another thread writes.
+    // Receives the upload in pieces and writes them to a file on another thread.
     void begin_upload() {
         const Result<std::string> name = ImportRequests::file_name(request_);
         if (!name) return refuse(error_response(400, name.error().where, name.error().why, name.error().remedy));
@@ -410,7 +410,7 @@ private:
     }
 
     void finish_upload() {
-        // Takes long: answered from its own thread, back through the network thread.
+        // An import takes long: it is answered from its own thread, through the network thread.
         stream_.expires_never();
         shared_.upload_queue->post([self = shared_from_this()] {
             const Result<void> finished = self->upload_->finish();
@@ -423,7 +423,7 @@ private:
 
     void refuse_upload(const Error& error) { refuse(error_response(507, error.where, error.why, error.remedy)); }
 
-    /// To make room for others: it only waits.
+    /// The connection may be closed to make room for others, because it only waits.
     void may_be_given_up() {
         place_.be_idle([weak = weak_from_this()] {
             if (const auto self = weak.lock()) self->stream_.close();
@@ -433,7 +433,7 @@ private:
     // Answers -----------------------------------------------------------------------------------------------------
 
     void answer() {
-        // Until the answer is there the client may wait: for the command in hand, say.
+        // The client may wait for its answer without a limit: for the current command, say.
         stream_.expires_never();
         if (Routes::is_scene(request_)) {
             may_be_given_up();
@@ -446,7 +446,7 @@ private:
         compute([self = shared_from_this()] { return self->shared_.routes->answer(self->request_); });
     }
 
-    /// From any thread: what takes its time goes to the queue, its answer comes back.
+    /// From any thread: runs `make` on the queue and posts its answer back.
     void compute(std::function<HttpResponse()> make) {
         shared_.route_queue->post([make = std::move(make), respond = respond_later()] {
             try {
@@ -457,7 +457,7 @@ private:
         });
     }
 
-    /// For other threads.
+    /// A function that other threads call with the answer.
     std::function<void(HttpResponse)> respond_later() {
         return [self = shared_from_this()](HttpResponse response) {
             asio::post(self->shared_.io,
@@ -480,12 +480,12 @@ private:
         return request;
     }
 
-    /// Removing a large file takes a moment.
+    /// On the queue, because removing a large file takes a moment.
     void drop_upload() {
         if (upload_) shared_.upload_queue->post([upload = std::exchange(upload_, nullptr)] {});
     }
 
-    /// What the client still sends is not read.
+    /// Answers without reading what the client still sends.
     void refuse(HttpResponse answer) {
         drop_upload();
         keep_alive_ = false;
@@ -514,7 +514,8 @@ private:
         });
     }
 
-    // What the client still sends is read for a moment: else the system would take back the answer that refuses it.
+    // Reads for a moment what the client still sends: otherwise the system would reset the connection and discard the
+    // answer.
     void close() {
         drop_upload();
         error_code ignored;
@@ -578,13 +579,13 @@ Server::Server() : state_(std::make_unique<State>()) {}
 
 Server::~Server() {
     state_->request_end();
-    // The scene first: it posts to the io_context until it has ended; then those that answer from its document.
+    // The scene first: it posts to the io_context until it has ended; then the queues that answer from its document.
     state_->shared.scene.reset();
     state_->shared.imports.reset();
     state_->shared.route_queue.reset();
     state_->shared.upload_queue.reset();
     state_->stop();
-    // Their sockets are the io_context's.
+    // Their sockets belong to the io_context.
     state_->shared.clients.clear();
 }
 
@@ -649,7 +650,7 @@ void Server::State::accept() {
     });
 }
 
-// No descriptor is left, most likely: the next try is for when a connection has ended.
+// Probably no descriptor is left: tries again after a pause, when a connection may have ended.
 void Server::State::accept_later(const error_code& error) {
     if (Clock::now() - accept_failure_told > accept_failure_period) {
         accept_failure_told = Clock::now();
@@ -666,7 +667,7 @@ void Server::State::welcome(tcp::socket socket) {
     const auto client = socket.remote_endpoint(ignored).address();
     auto place = shared.connections.admit(client.to_string());
     if (!place) {
-        // As much as the system takes at once: nobody waits for who is turned away.
+        // Sends as much as the socket takes at once, without waiting for a refused client.
         static constexpr std::string_view answer =
             "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 10\r\nContent-Length: 0\r\n\r\n";
         socket.non_blocking(true, ignored);
@@ -682,7 +683,7 @@ void Server::State::welcome(tcp::socket socket) {
     }
 }
 
-// Sending may drop a client, so nobody walks the map itself.
+// Sending may remove a client from the map, so callers iterate over a copy.
 std::vector<std::shared_ptr<WebSocketClient>> Server::State::clients() const {
     std::vector<std::shared_ptr<WebSocketClient>> all;
     for (const auto& [id, client] : shared.clients) all.push_back(client);
@@ -705,7 +706,7 @@ SceneThreadListener Server::State::listener() {
         });
     };
     listener.states_changed = [this] {
-        // One wake-up on its way is enough: it will find the newest states.
+        // One posted call is enough: it will find the newest states.
         if (frame_posted.exchange(true)) return;
         asio::post(shared.io, [this] {
             frame_posted = false;
@@ -742,7 +743,7 @@ void Server::run() {
     state_->signals->async_wait([this](error_code error, int) {
         if (!error) state_->stop();
     });
-    // What a handler throws (memory, files) ends its own connection and nothing else.
+    // An exception of a handler (memory, files) ends its own connection and nothing else.
     for (;;) {
         try {
             state_->shared.io.run();

@@ -12,7 +12,7 @@
 namespace embody::server {
 
 struct ServerOptions {
-    std::string address = "127.0.0.1";    ///< other addresses need the token that url() ends with
+    std::string address = "127.0.0.1";    ///< with any other address url() ends with a token, which clients need
     unsigned short port = 8420;           ///< 0: any free one
     bool any_port_if_taken = true;        ///< take a free port where `port` is in use
     std::filesystem::path studio_folder;  ///< the built front-end
@@ -22,21 +22,21 @@ struct ServerOptions {
 /// Serves the Studio, the models and one open scene to browsers and scripts (docs/protocol.md).
 class Server {
 public:
-    /// Listens when this returns.
+    /// The server listens when this returns.
     static Result<std::unique_ptr<Server>> start(const ServerOptions& options);
     /// Closes all connections and stops the scene.
     ~Server();
 
-    /// Where a browser finds the Studio, with the token where one is needed.
+    /// The Studio's address, with the token where one is needed.
     [[nodiscard]] std::string url() const;
     /// Serves until request_stop() or SIGINT or SIGTERM.
     void run();
-    /// From any thread.
+    /// May be called from any thread.
     void request_stop();
-    /// After run(): ends all that still works. True: everything has ended in this time, the scene autosaved; the server
-    /// can be destroyed. False: something does not end, a step of a huge scene, say, or the import of a model. Then the
-    /// scene was autosaved as it was before, uploads are removed, and the process should end without destroying the
-    /// server, which would wait. The error: the scene could not be kept.
+    /// After run(): ends all that is still running. True: everything has ended in this time, the scene is autosaved,
+    /// and the server can be destroyed. False: something does not end, for example a step of a huge scene or the import
+    /// of a model. Then the scene was autosaved as it was before, uploads are removed, and the process should end
+    /// without destroying the server, which would wait. The error: the scene could not be saved.
     Result<bool> end_within(std::chrono::milliseconds time);
 
 private:

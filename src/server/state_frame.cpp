@@ -26,7 +26,7 @@ void append_record(std::string& frame, const scene::EntityState& state, bool has
     append(frame, std::uint16_t{0});
 }
 
-// Positions in 65535ths of the box around them: of a heap of a metre, in steps of 15 µm.
+// Positions in 65535ths of the box around them: steps of 15 µm for a box of a metre.
 std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& positions,
                           const scene::MovingPoints& points) {
     constexpr double steps = 65535;
@@ -60,7 +60,7 @@ bool same(const scene::EntityState& a, const scene::EntityState& b) { return a.p
 
 void StateBoard::publish(const std::vector<scene::EntityState>& states, double time, std::uint64_t step,
                          bool all_changed) {
-    // Only this thread ever puts another table there.
+    // Only this thread replaces the table.
     const Table& before = *table_;
     auto next = std::make_shared<Table>();
     next->version = before.version + 1;
@@ -84,7 +84,7 @@ StateBoard::Row StateBoard::next_row(const scene::EntityState& state, const Row*
     row.state.points = nullptr;
     if (!has_points) return row;
 
-    // What slept and still does has not moved; of the rest the bytes tell.
+    // What was asleep and still is has not moved; for others the bytes are compared.
     if (is_same && state.state == asleep) {
         row.points = known->points;
         row.points_changed = known->points_changed;

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* lock_name = "in-use";
 
-/// The folder's lock, which the system takes back from a process that is killed; -1: somebody else has it, or there is
-/// none and `flags` do not make one.
+/// Locks the folder; the system releases the lock when the process ends. -1: another process has it, or there is no
+/// lock file and `flags` do not create one.
 int lock_folder(const fs::path& folder, int flags) {
     const int lock = open((folder / lock_name).c_str(), O_RDWR | O_CLOEXEC | flags, 0600);
     if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
@@ -25,7 +25,7 @@ int lock_folder(const fs::path& folder, int flags) {
     return -1;
 }
 
-/// Folders of processes that have ended without removing them; what has no lock is not ours.
+/// Removes folders of processes that ended without removing them; a folder without a lock file is not ours.
 void remove_abandoned(const fs::path& folder_of_all) {
     std::error_code problem;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_of_all, problem)) {
@@ -64,7 +64,7 @@ UploadStore::~UploadStore() {
 void UploadStore::remove_all() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
-    fs::remove(folder_.parent_path(), ignored);  // where no other process has uploads
+    fs::remove(folder_.parent_path(), ignored);  // succeeds where no other process has uploads
 }
 
 Result<std::shared_ptr<Upload>> UploadStore::begin(const std::string& name) {

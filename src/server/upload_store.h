@@ -13,9 +13,9 @@
 
 namespace embody::server {
 
-/// Bytes of one uploaded file.
+/// Largest size of one uploaded file, bytes.
 inline constexpr std::uint64_t largest_upload = std::uint64_t{256} << 20;
-/// That are being received or wait for their import; others are refused meanwhile.
+/// Largest number of uploads that are being received or wait for their import; others are refused meanwhile.
 inline constexpr std::size_t most_uploads = 8;
 
 class UploadStore;
@@ -28,9 +28,9 @@ public:
     Upload& operator=(const Upload&) = delete;
 
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-    /// Appends; fails where the disk is full.
+    /// Appends bytes; fails where the disk is full.
     Result<void> write(std::span<const char> bytes);
-    /// All is there: it can be read.
+    /// Closes the file after its last byte: it can be read.
     Result<void> finish();
 
 private:
@@ -38,20 +38,21 @@ private:
     Upload(std::shared_ptr<UploadStore> store, std::filesystem::path file, int descriptor)
         : store_(std::move(store)), file_(std::move(file)), descriptor_(descriptor) {}
     std::shared_ptr<UploadStore> store_;
-    std::filesystem::path file_;  ///< alone in a folder
+    std::filesystem::path file_;  ///< the only file of its folder
     int descriptor_;
 };
 
-/// Where uploads lie until they are imported: a folder of this process below one folder of all, which it holds a lock
-/// on. What a process that was killed left there goes at the next start. Thread-safe.
+/// Holds uploads until they are imported, in a folder of this process, which it locks, inside one folder for all
+/// processes. The next start removes what a killed process left there. Thread-safe.
 class UploadStore : public std::enable_shared_from_this<UploadStore> {
 public:
     static Result<std::shared_ptr<UploadStore>> open(const std::filesystem::path& folder_of_all);
     ~UploadStore();
 
-    /// `name`: the file's name, for importers go by its ending. Fails where too many are there already.
+    /// `name`: the file's name, because importers are chosen by its extension. Fails where there are too many uploads
+    /// already.
     Result<std::shared_ptr<Upload>> begin(const std::string& name);
-    /// At the end of the program, whoever still uses them.
+    /// At the end of the program, even where uploads are still in use.
     void remove_all();
 
 private:
@@ -62,7 +63,7 @@ private:
     std::filesystem::path folder_;
     int lock_;
     std::mutex mutex_;
-    std::set<std::filesystem::path> uploads_;  ///< their folders
+    std::set<std::filesystem::path> uploads_;  ///< folders of the uploads
     std::uint64_t next_ = 1;
 };
 

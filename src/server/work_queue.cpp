@@ -51,7 +51,7 @@ void WorkQueue::run() {
         lock.lock();
     }
     --running_;
-    // Under the lock: whoever waited may destroy this as soon as it is free.
+    // While the lock is held, because the waiting thread may destroy this object as soon as the lock is free.
     changed_.notify_all();
 }
 

@@ -11,26 +11,26 @@
 
 namespace embody::server {
 
-/// Threads that do what is posted, in order, so that the network thread never waits for a disk, a database or the
+/// Threads that run the posted functions in order, so that the network thread never waits for a disk, a database or the
 /// scene.
 class WorkQueue {
 public:
     explicit WorkQueue(std::size_t threads);
-    /// Ends after the work in hand; what waits is dropped.
+    /// Ends after the current function; those that wait are dropped.
     ~WorkQueue();
 
-    /// From any thread. The work must not throw.
+    /// May be called from any thread. The function must not throw.
     void post(std::function<void()> work);
 
-    /// From any thread: what is in hand is the last.
+    /// May be called from any thread: the current function is the last.
     void request_stop();
-    /// Whether all threads have ended by then.
+    /// Waits until then; returns whether all threads have ended.
     bool wait_ended(std::chrono::steady_clock::time_point until);
 
 private:
     void run();
 
-    std::mutex mutex_;  ///< guards all below but the threads
+    std::mutex mutex_;  ///< guards all members below but the threads
     std::condition_variable changed_;
     std::deque<std::function<void()>> waiting_;
     std::size_t running_ = 0;  ///< threads that have not ended
