@@ -37,7 +37,7 @@ app.append(scene);
 try {
   start();
 } catch (error) {
-  // Without WebGL there is nothing to show but the reason.
+  // Without WebGL only the reason can be shown.
   scene.replaceChildren(
     element("div", { class: "lost", role: "alert" }, element("strong", {}, "The Studio cannot draw here"), element("p", {}, `${(error as Error).message} The browser needs WebGL 2.`)),
   );
@@ -92,7 +92,7 @@ function start(): void {
   studio.connection.open();
 }
 
-/** Models to choose from, and what is in the scene, behind two tabs. */
+/** Two tabs: the models of the database, and the entities of the scene. */
 function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): { root: HTMLElement; showModels(): void } {
   const pages = [
     { name: "Models", root: browser.root },

@@ -12,14 +12,14 @@ import type { EntityView } from "./view/entity_view";
 import type { ModelStore } from "./view/model_store";
 import type { View } from "./view/view";
 
-/** What the model browser shows. */
+/** The result of a search in the model browser. */
 export interface Found {
   models: ModelChoice;
-  /** In words, such as “chair” in beds. */
+  /** Description of the search, such as “chair” in beds. */
   text: string;
 }
 
-/** What there is one of on a page. A panel or tool takes `Pick<Parts, …>` of it, so that its signature says what it may touch. */
+/** The objects that a page has one of. A panel or tool takes `Pick<Parts, …>`, so that its signature says what it may use. */
 export interface Parts {
   readonly preferences: Preferences;
   readonly server: Server;

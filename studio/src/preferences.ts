@@ -5,18 +5,18 @@ import type { Theme } from "./view/environment";
 import { drawsInSoftware } from "./view/software";
 import type { Quality } from "./view/tint";
 
-/** What this browser's user likes; kept in the browser. */
+/** This user's preferences; kept in the browser. */
 export interface PreferenceValues {
   theme: Theme;
   quality: Quality;
-  /** States of the simulation can be told from the picture. */
+  /** States of the simulation are shown by colours. */
   tint: boolean;
-  /** By their colour all over, in place of the things' own. */
+  /** The state's colour replaces the entity's own colour. */
   fullTint: boolean;
   grid: boolean;
-  /** What collides is drawn over what is selected. */
+  /** Collision shapes are drawn over the selection. */
   collision: boolean;
-  /** What the solver sees is drawn over everything. */
+  /** Debug drawings of the solver that are shown over the picture. */
   debug: readonly DebugName[];
   snap: boolean;
   /** Metres and degrees. */
@@ -24,7 +24,7 @@ export interface PreferenceValues {
   snapAngle: number;
   favourites: string[];
   recent: string[];
-  /** What the history of changes calls this browser's user; empty: a number. */
+  /** This user's name in the history of changes; empty: a number. */
   userName: string;
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
@@ -56,7 +56,7 @@ export class Preferences {
     const kept = readKept();
     this.values = { ...DEFAULTS, ...kept };
     if (!kept.quality && drawsInSoftware()) this.values.quality = "low";
-    // `?quality=low` for one visit: software renderers and tests.
+    // `?quality=low` holds for one visit: for software renderers and tests.
     const asked = new URLSearchParams(location.search).get("quality");
     if (asked === "low" || asked === "high") this.values.quality = asked;
   }
@@ -70,7 +70,7 @@ export class Preferences {
     try {
       localStorage.setItem(PLACE, JSON.stringify(this.values));
     } catch {
-      // A browser that keeps nothing forgets preferences; that is its user's wish.
+      // Where the browser stores nothing, preferences are lost; the user has set it so.
     }
     this.changed.emit(name);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-/** Tells whoever listens that something happened. */
+/** An event that listeners subscribe to. */
 export class Signal<Value> {
   private readonly listeners = new Set<(value: Value) => void>();
 
-  /** Calls `listener` from now on; the returned function ends that. */
+  /** Subscribes `listener`; the returned function unsubscribes it. */
   on(listener: (value: Value) => void): () => void {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);

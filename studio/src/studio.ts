@@ -18,13 +18,13 @@ import { ModelStore } from "./view/model_store";
 import { drawsInSoftware } from "./view/software";
 import { View } from "./view/view";
 
-/** Of a large selection only the first are asked for. */
+/** Of a large selection only so many collision shapes are asked for. */
 const MOST_COLLISION_SHAPES = 64;
-/** Simulated seconds in a second that are real time, and the longest time between pictures for its sake, ms. */
+/** Simulated seconds per second that count as real time; the longest pause between pictures that helps to keep it, ms. */
 const KEEPS_PACE = 0.95;
 const LONGEST_PACE_MS = 100;
 
-/** Everything that is one per page, and how news from the server reaches it. */
+/** All objects that a page has one of, and the handlers of the server's events. */
 export class Studio implements Parts {
   readonly preferences = new Preferences();
   readonly connection = new Connection();
@@ -39,7 +39,7 @@ export class Studio implements Parts {
   readonly models = new ModelStore(this.connection);
   readonly entities = new EntityView(this.document, this.motion, this.models, this.connection, this.preferences.get("quality"));
   readonly view: View;
-  /** The user wants to see who changed what. */
+  /** The user asked for the history of changes. */
   readonly historyWanted = new Signal<void>();
   private collisionAsked = 0;
   private readonly onOneProcessor = ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname) && drawsInSoftware();
@@ -84,14 +84,14 @@ export class Studio implements Parts {
     });
   }
 
-  /** Asks what collides of what is selected, and draws it. */
+  /** Asks for the collision shapes of the selection and draws them. */
   private async showCollision(): Promise<void> {
     const wanted = ++this.collisionAsked;
     const indices = this.preferences.get("collision") ? this.selection.indices.slice(0, MOST_COLLISION_SHAPES) : [];
     const shown: { index: number; shape: Shape }[] = [];
     for (const index of indices) {
       const told = await this.server.command("entity.collision_shape", { index });
-      // What is selected, or the document, may have changed while the answer was on its way.
+      // The selection or the document may have changed while the answer was on its way.
       if (wanted !== this.collisionAsked) return;
       if (told?.shape) shown.push({ index, shape: told.shape });
     }
@@ -99,7 +99,7 @@ export class Studio implements Parts {
     this.view.invalidate();
   }
 
-  /** Tells the server what of the solver's inside is to be drawn; its frames follow. */
+  /** Tells the server which debug drawings are wanted; their frames follow. */
   private async askDebug(): Promise<void> {
     const show = this.preferences.get("debug");
     if (show.length === 0) this.view.debug.show(null);
@@ -108,7 +108,7 @@ export class Studio implements Parts {
 
   private followConnection(): void {
     this.connection.opened.on(() => {
-      // It may be another server now. Frames may come before the answer to hello, so that only here all poses are old.
+      // It may be another server. Frames may arrive before the answer to hello, so poses become invalid only here.
       this.models.forgetSummaries();
       this.motion.clear();
       this.entities.forgetPoints();
@@ -118,7 +118,7 @@ export class Studio implements Parts {
     this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
     this.connection.event.on((event) => this.take(event));
     this.connection.debug.on((frame) => {
-      // One may still come after it was turned off.
+      // A frame may still arrive after debug drawing was turned off.
       this.view.debug.show(this.preferences.get("debug").length > 0 ? frame : null);
       this.view.drawSoon();
       this.connection.wantFrame();
@@ -128,7 +128,7 @@ export class Studio implements Parts {
       this.entities.takePoints(frame, performance.now(), this.playback.playing);
       this.playback.goOn(frame);
       this.view.drawSoon();
-      // The next frame is wanted when this one has been drawn; where nothing is drawn (a hidden page), at once.
+      // The next frame is requested after this one has been drawn; where nothing is drawn (a hidden page), at once.
       if (document.hidden) this.connection.wantFrame();
       else setTimeout(() => requestAnimationFrame(() => this.connection.wantFrame()), this.view.pace);
     });
@@ -155,7 +155,7 @@ export class Studio implements Parts {
     });
   }
 
-  /** After (re)connecting: the whole document and simulation as they are now. */
+  /** After (re)connecting: loads the whole document and the present state of the simulation. */
   private async greet(): Promise<void> {
     const hello = await this.server.command("hello", {});
     if (!hello) return;
@@ -174,7 +174,7 @@ export class Studio implements Parts {
     await this.server.command("client.set_name", { name: this.preferences.get("userName") });
   }
 
-  /** Models were changed: what is known of them is old, and whoever did it may want it back. */
+  /** Models were changed: their cached data are dropped, and the client that changed them is offered an undo. */
   private takeCatalog(event: CatalogEvent): void {
     this.models.forgetSummaries(event.keys);
     void this.showCollision();
@@ -226,7 +226,7 @@ export class Studio implements Parts {
     }
   }
 
-  /** Where one computer simulates and draws, both with its processor, pictures give way until the simulation keeps pace. */
+  /** Where one processor both simulates and draws, pictures are drawn less often until the simulation keeps pace. */
   private sharePower({ real_time_factor: rate }: Statistics): void {
     if (!this.onOneProcessor) return;
     const change = this.playback.playing && rate < KEEPS_PACE ? 20 : -10;
@@ -235,7 +235,7 @@ export class Studio implements Parts {
 
   private takeDocument(event: DocumentEvent): void {
     const isOther = event.changes.some((change) => change.op === "reset");
-    // Every pose of the new scene follows in a frame.
+    // All poses of the new scene follow in a frame.
     if (isOther) {
       this.motion.clear();
       this.entities.forgetPoints();
@@ -255,7 +255,7 @@ export class Studio implements Parts {
     this.playback.changed.emit();
   }
 
-  /** States are told apart while there is a simulation; a scene being built shows its own colours. */
+  /** Shows state colours only while a simulation runs; while a scene is being built its own colours are shown. */
   private retint(): void {
     const { preferences } = this;
     const shown = preferences.get("tint") && this.playback.simulation.state !== "stopped";
@@ -264,7 +264,7 @@ export class Studio implements Parts {
     this.view.invalidate();
   }
 
-  /** The box around everything, with room around it; models that are still on their way count as a point. */
+  /** The box around all entities, with a margin; models that are still being loaded count as a point. */
   private wholeScene(): Box3 {
     const { entities } = this.document;
     const bounds = this.entities.boundsOf(entities.keys(), performance.now());
@@ -279,7 +279,7 @@ export class Studio implements Parts {
   }
 }
 
-/** What was done, of what a step of undo is called. */
+/** The label of an undo step in the past tense. */
 function pastOf(label: string): string {
   return label.replace(/^Take back /, "Took back ").replace(/^Set /, "Changed ");
 }

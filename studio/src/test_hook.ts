@@ -5,32 +5,32 @@ import { nameOf } from "./document/scene_document";
 import type { Studio } from "./studio";
 import { presentPoses } from "./tools/poses";
 
-/** What tests and scripts in the page may look at: `window.embody`. It can change nothing but the drawing. */
+/** What tests and scripts in the page may read: `window.embody`. It can change nothing but the drawing. */
 export interface TestHook {
   connected(): boolean;
   simulation(): { state: string; time: number; step: number };
   statistics(): unknown;
   selection(): number[];
   entities(): { index: number; name: string; model: string | null; position: number[]; rotation: number[]; state: BodyState; drawn: boolean }[];
-  /** Models still on their way, and pictures drawn so far. */
+  /** Models that are being loaded, and pictures drawn so far. */
   loading(): number;
   frames(): number;
-  /** Where on the page the middle of an entity's box is seen. */
+  /** The place on the page where the centre of an entity's box is drawn. */
   seenAt(index: number): { x: number; y: number } | null;
-  /** Red, green, blue and amount of the state colour an entity is drawn with. */
+  /** Red, green, blue and amount of the state colour that an entity is drawn with. */
   tintOf(index: number): number[];
-  /** Points that an entity is drawn as, triangles of their surface where they are a liquid, and the box around them; null where it is drawn as a thing. */
+  /** Number of an entity's points, of triangles of their surface where they are a liquid, and their box; null where it has no points. */
   points(index: number): { count: number; triangles: number; liquid: boolean; lower: number[]; upper: number[] } | null;
-  /** Size of the box around a soft thing's drawn form in its own frame, its vertices and the mean length of their normals; null for others. */
+  /** A soft entity's drawn form in its own frame: size of its box, number of vertices and mean length of their normals; else null. */
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
-  /** Nodes of the selection that are marked as held. */
+  /** Number of the selection's nodes that are marked as pinned. */
   pinned(): number;
-  /** Parts of collision shapes that are drawn over the selection. */
+  /** Number of convex parts that are drawn over the selection. */
   collisionParts(): number;
   /** Lines and points of each meaning (docs/protocol.md, "Debug frames") that are drawn. */
   debugCounts(): Record<number, { lines: number; points: number }>;
   pick(x: number, y: number): number | null;
-  /** Stops drawing, for screenshots; resume() goes on. */
+  /** Stops drawing, for screenshots; resume() starts it again. */
   halt(): void;
   resume(): void;
 }

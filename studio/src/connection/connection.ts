@@ -28,15 +28,15 @@ export function reasonText(error: Error): string {
 
 type Waiting = { resolve: (result: never) => void; reject: (error: Error) => void };
 
-/** The page's end of the socket worker: commands as promises, events and frames as signals, reconnecting for ever. */
+/** The page's side of the socket worker: commands as promises, events and frames as signals; it reconnects without end. */
 export class Connection {
   readonly opened = new Signal<void>();
   readonly closed = new Signal<string>();
   readonly event = new Signal<ServerEvent>();
   readonly frame = new Signal<Frame>();
-  /** What the solver sees, as asked for by debug.draw. */
+  /** Debug frames, as chosen by debug.draw. */
   readonly debug = new Signal<DebugFrame>();
-  /** Something arrived that this Studio cannot read. */
+  /** Something arrived that this version of the Studio cannot read. */
   readonly fault = new Signal<string>();
   isOpen = false;
 
@@ -70,7 +70,7 @@ export class Connection {
     });
   }
 
-  /** The last frame has been used; the worker may send the next. */
+  /** Call when the last frame has been used: the worker may send the next. */
   wantFrame(): void {
     this.tell({ kind: "next_frame" });
   }

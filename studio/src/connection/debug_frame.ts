@@ -12,12 +12,12 @@ const POINT_FLOATS = 3;
 export const DEBUG_NAMES = ["shapes", "bounds", "contacts", "impulses", "islands", "joints", "masses", "particles", "deformables", "trees"] as const;
 export type DebugName = (typeof DEBUG_NAMES)[number];
 
-/** Lines and points that stand for the same. */
+/** Lines and points of the same meaning. */
 export interface DebugBatch {
   meaning: number;
   dim: boolean;
   number: number;
-  /** From and to of each, x y z. */
+  /** Start and end of each line, x y z. */
   lines: Float32Array;
   points: Float32Array;
 }
@@ -33,7 +33,7 @@ export function isDebugFrame(buffer: ArrayBuffer): boolean {
   return buffer.byteLength >= 4 && new DataView(buffer).getUint32(0, true) === MAGIC;
 }
 
-/** Reads a frame; throws with the reason when it is not one of this version. Its numbers stay in the buffer. */
+/** Reads a frame; throws with the reason when its version is another one. The numbers stay in the buffer. */
 export function decodeDebugFrame(buffer: ArrayBuffer): DebugFrame {
   if (buffer.byteLength < HEADER_BYTES) throw new Error("debug frame shorter than its header");
   const view = new DataView(buffer);

@@ -16,27 +16,27 @@ export interface Frame {
   states: Uint8Array;
   /** 1 where the entity has points. */
   pointed: Uint8Array;
-  /** Points of entities that are not one body, where some moved. */
+  /** Points that moved, of entities that are not one body. */
   sets: PointSet[];
 }
 
-/** Points of one entity: grains, or nodes of what changes its form. */
+/** Points of one entity: grains, or nodes of a deformable thing. */
 export interface PointSet {
   index: number;
-  /** Least corner and size of the box around them, m, world. */
+  /** Minimum corner and size of the box around the points, m, world. */
   lower: [number, number, number];
   size: [number, number, number];
-  /** Of the ball at each, m; 0: they carry the entity's drawn form. */
+  /** Radius of the ball at each point, m; 0: the points carry the entity's drawn form. */
   radius: number;
-  /** They are a liquid: what is drawn is its surface. */
+  /** The points are particles of a liquid: its surface is drawn. */
   liquid: boolean;
-  /** Three numbers each, in 65535ths of the box. */
+  /** Three numbers for each point, in 65535ths of the box. */
   positions: Uint16Array;
 }
 
 export const POSE_FLOATS = 7;
 
-/** Reads a frame; throws with the reason when it is not one of this version. */
+/** Reads a frame; throws with the reason when its version is another one. */
 export function decodeFrame(buffer: ArrayBuffer): Frame {
   if (buffer.byteLength < HEADER_BYTES) throw new Error("state frame shorter than its header");
   const view = new DataView(buffer);
@@ -90,7 +90,7 @@ function decodeSets(buffer: ArrayBuffer, start: number, count: number): PointSet
   return sets;
 }
 
-/** Gathers frames that nobody has looked at yet into one: per entity only the newest pose is kept. */
+/** Merges frames that have not been used yet into one: only the newest pose of each entity is kept. */
 export class NewestFrame {
   private readonly records = new Map<number, { pose: Float32Array; state: number; pointed: number }>();
   private readonly sets = new Map<number, PointSet>();
@@ -110,7 +110,7 @@ export class NewestFrame {
     for (const set of frame.sets) this.sets.set(set.index, set);
   }
 
-  /** The gathered frame, or null when none came since the last call. */
+  /** The merged frame, or null when none came since the last call. */
   take(): Frame | null {
     if (!this.any) return null;
     const count = this.records.size;

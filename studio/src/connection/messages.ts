@@ -43,11 +43,11 @@ export interface AttributeEntry {
   range: [number | null, number | null] | null;
   automatic: AttributeValue | null;
   overridden: boolean;
-  /** Of an entity of a model: the value without the entity's scale. */
+  /** Of an entity with a model: the value without the entity's scale. */
   of_model?: AttributeValue;
 }
 
-/** Which models a change is for. */
+/** The models that a change is for. */
 export type ModelChoice = { keys: string[] } | { words?: string; category?: string } | { all: true };
 
 /** What a change of the catalogue did, or would do. */
@@ -61,14 +61,14 @@ export interface ChangeSummary {
   values: number;
   unchanged: number;
   refused: number;
-  /** The first of those that change, and of those that refuse. */
+  /** The first of the models that change, and of those that refuse. */
   models: { key: string; name: string }[];
   refusals: { key: string; name: string; attribute: string; why: string }[];
-  /** Of the open scene: how many take the new value, and how many have one of their own. */
+  /** In the open scene: how many entities take the new value, and how many keep a value of their own. */
   entities: { following: number; keeping: number };
 }
 
-/** An act of a person on the catalogue. */
+/** One change of the catalogue by a person. */
 export interface ChangeBatch {
   batch: number;
   time: string;
@@ -80,7 +80,7 @@ export interface ChangeBatch {
   undone_by: number | null;
   values: number;
   models: number;
-  /** The first of its values; null: the automatic one acted. */
+  /** The first changed values; null: the automatic value was used. */
   changes: { key: string; name: string; attribute: string; label: string; unit: string; before: AttributeValue | null; after: AttributeValue | null }[];
 }
 
@@ -104,12 +104,12 @@ export interface Statistics {
   step: number;
   /** All entities in the world. */
   bodies: number;
-  /** Those that can move, and of them those in each state; a heap, a liquid or a cloth is one thing. */
+  /** Entities that can move, and how many of them are in each state; a pile of grains, a liquid or a cloth counts as one. */
   things: number;
   active: number;
   wants_to_sleep: number;
   asleep: number;
-  /** Grains, drops and nodes of what is no single body. */
+  /** Grains, particles of liquids and nodes of deformable things. */
   points: number;
   contacts: number;
   step_ms: number;
@@ -123,7 +123,7 @@ export interface ServerError {
   remedy: string;
 }
 
-/** What one entity.add asks for; the server fills in the rest. */
+/** Parameters of one entity.add; the server fills in the rest. */
 export type NewEntity = Partial<Omit<Entity, "index">>;
 
 export interface PoseEdit {
@@ -137,7 +137,7 @@ export interface Ray {
   direction: Vector;
 }
 
-/** The scene and its simulation as they are when a client comes. */
+/** The scene and its simulation at the time when a client connects. */
 export interface Hello {
   version: string;
   scene: Scene;
@@ -150,24 +150,24 @@ export interface Hello {
   name: string;
   /** This client's number. */
   client: number;
-  /** What actions have put into the running world, and which of the document's entities they have taken out. */
+  /** Entities that actions added to the running world, and those of the document that actions removed. */
   spawned: Entity[];
   despawned: number[];
 }
 
-/** What carries the drawn form of an entity that changes it, at rest, in the entity's frame with its scale in it. */
+/** The mesh that carries a deformable entity's drawn form, at rest, in the entity's frame, with its scale applied. */
 export interface SimulationMesh {
-  /** x, y, z each, m. */
+  /** x, y, z of each node, m. */
   nodes: number[];
-  /** Of a solid, four nodes each. */
+  /** Of a solid: four nodes of each tetrahedron. */
   tetrahedra?: number[];
-  /** Of cloth, three nodes each. */
+  /** Of cloth: three nodes of each triangle. */
   triangles?: number[];
-  /** Of a rope, whose nodes follow each other: where it is broken, between these and the next. */
+  /** Of a rope, whose nodes follow each other: it is broken between each of these nodes and the next. */
   broken?: number[];
 }
 
-/** Each command's parameters and result. */
+/** Parameters and result of each command. */
 export interface Commands {
   hello: [Record<string, never>, Hello];
   "catalog.search": [{ words?: string; category?: string; limit?: number; offset?: number }, { models: ModelSummary[]; total: number }];
@@ -230,7 +230,7 @@ export interface DocumentEvent {
   undo: string | null;
   redo: string | null;
   unsaved: boolean;
-  /** Under which it was saved; empty for a scene that never was. */
+  /** Name under which the scene was saved; empty where it never was. */
   name: string;
 }
 
@@ -241,11 +241,11 @@ export interface CatalogEvent {
   command: string;
   label: string;
   models: number;
-  /** Null: too many to name. */
+  /** Null: too many to list. */
   keys: string[] | null;
   attributes: string[];
   session: string;
-  /** Null: another program did it. */
+  /** Null: another program changed them. */
   client: number | null;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene file (docs/scene-format.md) as far as the Studio reads it. What is missing has the format's default.
+// The scene file (docs/scene-format.md) as far as the Studio reads it. A missing field has the format's default.
 
 export type Vector = [number, number, number];
 export type Quaternion = [number, number, number, number];
@@ -14,7 +14,7 @@ interface RoundLengths {
   half_height: number;
 }
 
-/** Shapes that are no more than their lengths, in metres; round ones have their axis along Y and are centred on the origin. */
+/** Shapes that are defined by their lengths alone, in metres; round ones have their axis along Y and are centred on the origin. */
 export interface ShapeLengths {
   box: { half_extents: Vector };
   sphere: { radius: number };
@@ -34,7 +34,7 @@ export type Shape =
   | { type: "mesh"; positions: Vector[]; triangles: Vector[] }
   | { type: "compound"; children: (ConvexShape & Pose)[] };
 
-/** Whom a trigger or an effect means. */
+/** The entities that a trigger or an effect is about. */
 export type Target = "any" | { index: number } | { name: string } | { category: string };
 
 export interface Scene extends SceneHeading {
@@ -295,7 +295,7 @@ export interface Action {
   once?: boolean;
 }
 
-/** Of a scene that says nothing else. */
+/** Settings of a scene that sets none. */
 export const DEFAULT_SETTINGS: SceneSettings = {
   gravity: [0, -9.81, 0],
   time_step: 0.016666666666666666,

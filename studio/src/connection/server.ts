@@ -4,18 +4,18 @@ import type { Connection } from "./connection";
 import type { CatalogEvent, Commands, Hello, Progress } from "./messages";
 import type { Notices } from "./notices";
 
-/** The server as panels and tools see it: its commands, who it is, and its news that are not the scene's. */
+/** The server as panels and tools see it: its commands, its version, and events that are not about the scene. */
 export class Server {
   /** Connected, disconnected, or greeted. */
   readonly changed = new Signal<void>();
-  /** Models were changed by hand, by whomever. */
+  /** Models were changed by hand, in this page or elsewhere. */
   readonly catalogChanged = new Signal<CatalogEvent>();
-  /** How far the command is that is being carried out, this page's or another's; all others wait for it. */
+  /** Progress of the command that is being executed, this page's or another's; all other commands wait for it. */
   readonly progress = new Signal<Progress>();
   version = "";
   /** This page's number on the server. */
   client = 0;
-  /** The document is here; false until the first answer to hello. */
+  /** Whether the document has arrived: false until the first answer to hello. */
   ready = false;
 
   constructor(
@@ -41,7 +41,7 @@ export class Server {
     return this.connection.request(name, params);
   }
 
-  /** Sends a command; a refusal is shown to the user and gives undefined. */
+  /** Sends a command; a refusal is shown to the user, and the result is undefined. */
   async command<Name extends keyof Commands>(name: Name, params: Commands[Name][0]): Promise<Commands[Name][1] | undefined> {
     try {
       return await this.request(name, params);
@@ -51,7 +51,7 @@ export class Server {
     }
   }
 
-  /** The answer to hello: who the server is. */
+  /** Takes the answer to hello: the server's version and this page's number. */
   meet({ version, client }: Hello): void {
     this.version = version;
     this.client = client;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Owns the WebSocket, so that frames are received while the page draws. Text goes on at once and in order; of state frames at
-// most one is on its way to the page, the others are merged here until the page asks again. Without this the picture lagged
-// 0.3 s behind when drawing was slow.
+// Owns the WebSocket, so that frames are received while the page draws. Text is passed on at once and in order. At most one state
+// frame is on its way to the page; later ones are merged here until the page asks again. Without this the picture was 0.3 s late
+// when drawing was slow.
 import { type DebugFrame, decodeDebugFrame, isDebugFrame } from "./debug_frame";
 import { decodeFrame, NewestFrame, type Frame } from "./frame";
 
@@ -22,7 +22,7 @@ let socket: WebSocket | null = null;
 let url = "";
 let attempts = 0;
 const newest = new NewestFrame();
-/** Not looked at yet; a newer one takes its place. */
+/** Not passed on yet; a newer frame replaces it. */
 let newestDebug: DebugFrame | null = null;
 let pageIsReady = true;
 
@@ -30,7 +30,7 @@ function tell(message: FromWorker, transfer: Transferable[] = []): void {
   postMessage(message, { transfer });
 }
 
-/** Hands the newest drawing of the solver's inside to the page, if there is one. */
+/** Sends the newest debug frame to the page, if there is one. */
 function flushDebug(): void {
   const frame = newestDebug;
   if (!frame) return;
@@ -39,7 +39,7 @@ function flushDebug(): void {
   tell({ kind: "debug", frame }, frame.batches.slice(0, 1).map((batch) => batch.lines.buffer));
 }
 
-/** Hands the gathered frame to the page, now. */
+/** Sends the merged frame to the page at once. */
 function flushFrame(): void {
   const frame = newest.take();
   if (!frame) return;
@@ -55,7 +55,7 @@ function flushFrame(): void {
 
 function receive(data: unknown): void {
   if (typeof data === "string") {
-    // A pose from before an event must not arrive after it.
+    // A pose from before an event must not arrive after the event.
     flushFrame();
     tell({ kind: "text", text: data });
     return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { ModelSummary, NewEntity } from "../connection/messages";
 
-/** What a model of the database becomes in the scene. */
+/** The entity that is added for a model of the database. */
 export function entityOf(model: ModelSummary): NewEntity {
   return { model: model.key };
 }

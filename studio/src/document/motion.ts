@@ -24,11 +24,11 @@ interface Track {
 const LONGEST_BLEND_MS = 120;
 
 /**
- * Where every entity is now. A frame's pose is reached over the time since the frame before, so that motion is smooth at any
- * rate of frames; while nothing plays poses are taken over at once.
+ * The present pose of every entity. It moves to a frame's pose during the time since the frame before, so that motion is smooth at
+ * any frame rate; while the simulation does not play, poses change at once.
  */
 export class Motion {
-  /** Entities whose picture is out of date. */
+  /** Entities whose drawn pose is out of date. */
   readonly moved = new Set<number>();
   /** Entities whose state changed. */
   readonly restated = new Set<number>();
@@ -48,7 +48,7 @@ export class Motion {
     this.blending.delete(index);
   }
 
-  /** Puts an entity somewhere at once. */
+  /** Sets an entity's pose at once. */
   place(index: number, position: readonly number[], rotation: readonly number[]): void {
     const track = this.track(index);
     track.toPosition.fromArray(position);
@@ -79,7 +79,7 @@ export class Motion {
     }
   }
 
-  /** Marks as moved what is on its way; returns whether anything still is afterwards. */
+  /** Marks entities that are still moving to their pose as moved; returns whether any still is afterwards. */
   advance(now: number): boolean {
     for (const index of this.blending) {
       this.moved.add(index);
@@ -89,7 +89,7 @@ export class Motion {
     return this.blending.size > 0;
   }
 
-  /** The pose to draw now; false for an entity nobody has placed. */
+  /** The pose to draw now; false for an entity without a pose. */
   pose(index: number, now: number, position: Vector3, rotation: Quaternion): boolean {
     const track = this.tracks.get(index);
     if (!track) return false;

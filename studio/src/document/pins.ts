@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Places to hold what bends at: corners, edges, ends, of its nodes at rest.
+// Places where a deformable entity can be pinned: corners, edges and ends of its nodes at rest.
 import { Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
 import type { Entity, Pin, Vector } from "../connection/scene_types";
 import { rotationOf } from "./scene_document";
 
-/** Of an edge or a face, so many pins along each side. */
+/** Number of pins along each side of an edge or a face. */
 const ALONG_AN_EDGE = 17;
 const ALONG_A_FACE = 4;
 /** The scene format's default. */
@@ -22,13 +22,13 @@ export const PLACE_LABELS: Record<PinPlace, string> = {
   bottom: "Bottom",
 };
 
-/** What can be pinned of a thing at once. */
+/** The places that an entity offers to pin. */
 export function placesOf(mesh: SimulationMesh): PinPlace[] {
   if (mesh.tetrahedra) return ["top", "bottom"];
   return mesh.triangles ? ["edge", "corners"] : ["ends", "end"];
 }
 
-/** Pins there, of nodes at rest in the entity's frame, that is turned as the entity stands in the scene. */
+/** Pins at a place, of nodes at rest in the entity's frame; `entity` says how it is turned in the scene. */
 export function pinsAt(place: PinPlace, mesh: SimulationMesh, entity: Entity): Pin[] {
   const at = (node: number): Pin => ({ position: mesh.nodes.slice(3 * node, 3 * node + 3) as Vector });
   const last = mesh.nodes.length / 3 - 1;
@@ -50,7 +50,7 @@ export function pinsAt(place: PinPlace, mesh: SimulationMesh, entity: Entity): P
     const isUpper = up[side]! > 0 === (place === "top");
     return onGrid(side, isUpper ? upper[side]! : lower[side]!, [0, 1, 2].filter((axis) => axis !== side), ALONG_A_FACE);
   }
-  // Of a sheet, which is flat across its thinnest side.
+  // The axis across a sheet: along it the sheet is thinnest.
   const flat = size.indexOf(Math.min(...size));
   const [u, v] = [0, 1, 2].filter((axis) => axis !== flat) as [number, number];
   if (place === "corners") return [lower[u]!, upper[u]!].flatMap((end) => onGrid(u, end, [v], 2));
@@ -59,7 +59,7 @@ export function pinsAt(place: PinPlace, mesh: SimulationMesh, entity: Entity): P
   return onGrid(side, end, [side === u ? v : u], ALONG_AN_EDGE);
 }
 
-/** The nodes that pins hold, as the scene finds them. */
+/** The nodes that pins hold; the same rule as the scene's. */
 export function heldNodes(pins: readonly Pin[], nodes: readonly number[]): number[] {
   const held = new Set<number>();
   for (const { position = [0, 0, 0], radius = RADIUS } of pins) {
@@ -75,7 +75,7 @@ export function heldNodes(pins: readonly Pin[], nodes: readonly number[]): numbe
   return [...held];
 }
 
-/** The node nearest to a place, of nodes as they are now. */
+/** The node nearest to a point, at the nodes' present positions. */
 export function nearestNode(places: ArrayLike<number>, { x, y, z }: Vector3): number {
   let nearest = 0;
   let least = Infinity;

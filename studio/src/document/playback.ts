@@ -2,11 +2,11 @@
 import type { Simulation, Statistics } from "../connection/messages";
 import { Signal } from "../signal";
 
-/** What the simulation of the scene does, as the server tells it. */
+/** State of the scene's simulation, as the server reports it. */
 export class Playback {
-  /** It was started, paused or reset. */
+  /** The simulation was started, paused or reset. */
   readonly changed = new Signal<void>();
-  /** There are new statistics. */
+  /** New statistics have arrived. */
   readonly measured = new Signal<void>();
   simulation: Simulation = { state: "stopped", time: 0, step: 0 };
   statistics: Statistics | null = null;
@@ -15,7 +15,7 @@ export class Playback {
     return this.simulation.state === "playing";
   }
 
-  /** The moment that the simulation has come to. */
+  /** Sets the time and step that the simulation has reached. */
   goOn({ time, step }: { time: number; step: number }): void {
     this.simulation.time = time;
     this.simulation.step = step;

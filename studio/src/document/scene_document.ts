@@ -3,9 +3,9 @@ import type { DocumentChange, DocumentEvent, Hello } from "../connection/message
 import { Signal } from "../signal";
 import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
 
-/** What of the document is new after an event. */
+/** Parts of the document that changed with an event. */
 export interface Changed {
-  /** Another scene: forget everything of the last one. */
+  /** Another scene was opened: nothing of the last one remains. */
   all: boolean;
   entities: number[];
   removed: number[];
@@ -14,13 +14,13 @@ export interface Changed {
   actions: boolean;
 }
 
-/** The client's copy of the open scene. It changes only by what the server tells. */
+/** The client's copy of the open scene. It changes only by the server's events. */
 export class SceneDocument {
   readonly changed = new Signal<Changed>();
   readonly entities = new Map<number, Entity>();
-  /** Entities that actions put into the running world; they are not the document's, and hide one of it with the same index. */
+  /** Entities that actions added to the running world; they are not in the document, and hide one of it with the same index. */
   readonly spawned = new Map<number, Entity>();
-  /** Entities of the document that actions took out of the running world. */
+  /** Entities of the document that actions removed from the running world. */
   readonly absent = new Set<number>();
   readonly joints = new Map<number, Joint>();
   readonly actions = new Map<number, Action>();
@@ -37,7 +37,7 @@ export class SceneDocument {
     return this.spawned.get(index) ?? this.entities.get(index);
   }
 
-  /** Everything, as the answer to hello brings it. */
+  /** Replaces everything by the answer to hello. */
   reset(hello: Hello): void {
     this.takeScene(hello.scene);
     for (const entity of hello.spawned ?? []) this.spawned.set(entity.index, entity);
@@ -53,21 +53,21 @@ export class SceneDocument {
     this.changed.emit(changed);
   }
 
-  /** An action put an entity into the running world. */
+  /** An action added an entity to the running world. */
   spawn(entity: Entity): void {
     this.spawned.set(entity.index, entity);
     this.absent.delete(entity.index);
     this.changed.emit({ ...nothingChanged(), entities: [entity.index] });
   }
 
-  /** An action took an entity out of the running world; one of the document stays in it and comes back with a reset. */
+  /** An action removed an entity from the running world; an entity of the document stays in it and comes back with a reset. */
   despawn(index: number): void {
     this.spawned.delete(index);
     if (this.entities.has(index)) this.absent.add(index);
     this.changed.emit({ ...nothingChanged(), removed: [index] });
   }
 
-  /** The running world is the document's again. */
+  /** The running world has the document's entities again. */
   forgetSpawned(): void {
     const removed = [...this.spawned.keys()];
     this.spawned.clear();
@@ -154,7 +154,7 @@ export function rotationOf(pose: Pose | undefined): Quaternion {
   return pose?.rotation ?? [0, 0, 0, 1];
 }
 
-/** What a person calls the entity. */
+/** The name that is shown for the entity. */
 export function nameOf(entity: Entity): string {
   if (entity.name) return entity.name;
   const kind = entity.shape?.type ?? "model";

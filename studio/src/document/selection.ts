@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Signal } from "../signal";
 
-/** The entities the user means, the last chosen one last. */
+/** The selected entities, the last selected one last. */
 export class Selection {
   readonly changed = new Signal<void>();
   private chosen: number[] = [];

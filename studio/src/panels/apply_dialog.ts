@@ -17,7 +17,7 @@ interface Scope {
   total: number;
 }
 
-/** Gives a value to models of the catalogue: these, all that are found, or a whole category; says first what would happen. */
+/** Sets a value for models of the catalogue: these, all that are found, or a whole category; shows first what would change. */
 export async function openApply(parts: Pick<Parts, "preferences" | "server" | "found" | "models">, entry: AttributeEntry, keys: string[]): Promise<void> {
   const scopes = await scopesOf(parts, keys);
   if (scopes.length > 0) new ApplyDialog(parts, entry, scopes);
@@ -44,7 +44,7 @@ class ApplyDialog {
     private readonly entry: AttributeEntry,
     scopes: Scope[],
   ) {
-    // What a scaled entity weighs is not what its model does.
+    // The value without the entity's scale, because the model has none.
     this.value = entry.of_model ?? entry.value;
     this.scope = scopes[0]!;
     this.field = fieldFor(entry, (value) => {
@@ -98,7 +98,7 @@ class ApplyDialog {
     return this.parts.server.request("catalog.change", { models: this.scope.models, attributes, skip: this.skip, dry_run });
   }
 
-  /** Asks what would happen; of answers to what is no longer asked nothing is shown. */
+  /** Asks the server what would change; an answer to an older question is not shown. */
   private async ask(): Promise<void> {
     const asked = ++this.asked;
     this.confirm.disabled = true;
@@ -113,7 +113,7 @@ class ApplyDialog {
 
   private showPreview(summary: ChangeSummary): void {
     const { changed, unchanged, refused, chosen } = summary;
-    // Without the others' consent nothing is planned where some refuse.
+    // Where some models refuse, nothing changes unless the user skips them.
     const stopped = refused > 0 && !this.skip;
     const others = chosen - refused;
     const lines: (HTMLElement | null)[] = [];
@@ -136,7 +136,7 @@ class ApplyDialog {
     setText(this.confirm, stopped || changed === 0 ? "Change" : changed === 1 ? "Change 1 model" : `Change ${changed.toLocaleString("en")} models`);
   }
 
-  /** What becomes of things that are there already. */
+  /** Says what happens to entities that are in the scene already. */
   private sceneNote({ entities: { following, keeping } }: ChangeSummary): HTMLElement {
     const parts = [];
     if (following > 0) parts.push(`${count(following, "thing", "things")} in this scene ${following === 1 ? "follows" : "follow"} at once.`);
@@ -156,7 +156,7 @@ class ApplyDialog {
     try {
       const summary = await this.request(false);
       this.working = false;
-      // Models may have come since the preview: then it is asked anew.
+      // Models may have been added since the preview: then ask again.
       if (summary.batch !== null || summary.refused === 0) return this.dialog.close();
     } catch (error) {
       setText(this.problem, reasonText(error as Error));
@@ -179,7 +179,7 @@ class ApplyDialog {
   }
 }
 
-/** What a change may be for: the models themselves, what the browser has found, their category. */
+/** The sets of models that a change can be for: these models, those that the browser has found, their category. */
 async function scopesOf(parts: Pick<Parts, "server" | "found" | "models">, keys: string[]): Promise<Scope[]> {
   const models = await Promise.allSettled(keys.map((key) => parts.models.summary(key)));
   const known = models.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
@@ -199,7 +199,7 @@ async function totalOf(parts: Pick<Parts, "server">, models: ModelChoice): Promi
   return answer?.total ?? 0;
 }
 
-/** The first names, those that several models have only once. */
+/** The first names; a name that several models have is listed once. */
 function nameList(names: string[], total: number, most: number): HTMLElement {
   const times = new Map<string, number>();
   for (const name of names) times.set(name, (times.get(name) ?? 0) + 1);

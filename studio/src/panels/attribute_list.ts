@@ -18,7 +18,7 @@ export class AttributeList implements AttributeEdits {
   private shape = "";
   private timer = 0;
   private generation = 0;
-  /** Kinds that are folded; few people look for the last one. */
+  /** Groups that are closed at first; few people look for the last one. */
   private readonly closed = new Set(["motion"]);
 
   constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "found" | "models">) {
@@ -51,7 +51,7 @@ export class AttributeList implements AttributeEdits {
     return selection.indices.length > 0 ? new SelectedEntities(this.parts) : null;
   }
 
-  /** Carries out an edit; the reason where the server refuses it belongs beside the field. */
+  /** Sends an edit to the server; returns the reason of a refusal, which is shown beside the field. */
   private async edit(request: (subject: AttributeSubject) => Promise<unknown>): Promise<string | null> {
     const subject = this.subject();
     if (!subject) return null;
@@ -82,7 +82,7 @@ export class AttributeList implements AttributeEdits {
     this.fill(subject, shareAttributes(sets));
   }
 
-  /** Rows stay while the same attributes are shown, so that the keyboard's place is not lost. */
+  /** Rows are kept while the same attributes are shown, so that the keyboard's focus is not lost. */
   private fill(subject: AttributeSubject, shared: SharedAttribute[]): void {
     const canApply = subject.models().length > 0;
     const shape = `${subject.id}:${canApply}:${shared.map(({ entry }) => `${entry.name}/${entry.type}`).join()}`;
@@ -109,7 +109,7 @@ export class AttributeList implements AttributeEdits {
     this.groups.replaceChildren(...groups.values());
   }
 
-  /** A group of attributes, open or closed as its user left the last one of that kind. */
+  /** A group of attributes, open or closed as the last group of that kind was. */
   private makeGroup(kind: string, title: string): HTMLElement {
     const group = element("details", { class: "group", open: !this.closed.has(kind) }, element("summary", {}, title));
     group.addEventListener("toggle", () => (group.open ? this.closed.delete(kind) : this.closed.add(kind)));
@@ -117,7 +117,7 @@ export class AttributeList implements AttributeEdits {
   }
 }
 
-/** The attributes that all have, with whether their values agree. */
+/** The attributes that all entities have, and whether their values agree. */
 export function shareAttributes(sets: AttributeEntry[][]): SharedAttribute[] {
   const [first, ...others] = sets;
   if (!first) return [];

@@ -4,7 +4,7 @@ import { element, setText, show } from "./element";
 import { type Field, NOISE, numberField, numberText, truthField, vectorField, wordField } from "./fields";
 import { icon } from "../tools/icons";
 
-/** One attribute as the selected entities have it. */
+/** One attribute and its value in the selected entities. */
 export interface SharedAttribute {
   entry: AttributeEntry;
   /** Whether all selected entities have the same value. */
@@ -12,7 +12,7 @@ export interface SharedAttribute {
   overridden: boolean;
 }
 
-/** How sure a value is, from the surest: what the badge beside it means. */
+/** Levels of confidence in a value, the highest first, and the meaning of the badge beside it. */
 const LEVELS: Record<string, string> = {
   manual: "Set by hand",
   measured: "Measured",
@@ -27,11 +27,11 @@ const LEVELS: Record<string, string> = {
 export interface AttributeEdits {
   set(name: string, value: AttributeValue): Promise<string | null>;
   reset(name: string): Promise<string | null>;
-  /** The user wants this value for models of the catalogue. */
+  /** The user asks to set this value for models of the catalogue. */
   apply(entry: AttributeEntry): void;
 }
 
-/** A physical attribute: its value to edit, where that comes from and how sure it is, and the way back. */
+/** A physical attribute: its value to edit, the source and confidence of the value, and a button to reset it. */
 export class AttributeRow {
   readonly root: HTMLElement;
   private readonly field: Field<never>;
@@ -88,9 +88,9 @@ export class AttributeRow {
     this.level.dataset["level"] = level;
     this.level.title = LEVELS[level] ?? "";
     const interval = same ? intervalText(entry) : "";
-    // A source that only repeats its level says nothing; what the level means does.
+    // A source that only repeats its level tells nothing new; the meaning of the level does.
     const told = entry.source === entry.level ? (LEVELS[level] ?? "") : entry.source;
-    // Set for the model, so that it is not this entity's to take back.
+    // The value was set for the model, so that it cannot be reset for this entity alone.
     const source = level === "manual" && !overridden ? `in the catalogue, ${told}` : told;
     setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : "the selected entities differ");
     this.source.title = same ? `${entry.source}${interval ? `\n80 % interval ${interval}` : ""}` : "";
@@ -126,7 +126,7 @@ export function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) 
   return made as unknown as Field<never>;
 }
 
-/** A symmetric tensor, as the server writes it: xx, yy, zz and, below these, xy, xz, yz. */
+/** A symmetric tensor, in the server's order: xx, yy, zz and, below these, xy, xz, yz. */
 function tensorField(label: string, unit: string, commit: (value: number[]) => void): Field<readonly number[]> {
   let diagonal: readonly number[] = [0, 0, 0];
   let mixed: readonly number[] = [0, 0, 0];
@@ -139,7 +139,7 @@ function tensorField(label: string, unit: string, commit: (value: number[]) => v
     set(next) {
       if (next) {
         diagonal = next.slice(0, 3);
-        // What is left of a symmetric body's products is rounding.
+        // Products of inertia of a symmetric body are zero but for rounding.
         const largest = Math.max(...diagonal.map(Math.abs));
         mixed = next.slice(3, 6).map((part) => (Math.abs(part) < NOISE * largest ? 0 : part));
       }
@@ -151,7 +151,7 @@ function tensorField(label: string, unit: string, commit: (value: number[]) => v
 
 function intervalText(entry: AttributeEntry): string {
   if (entry.low === null || entry.high === null || entry.low === undefined || entry.high === undefined) return "";
-  // Bounds are estimates: three figures say all they know.
+  // Bounds are estimates: three significant digits are enough.
   const text = (bound: number) => numberText(Number(bound.toPrecision(3)));
   return `${text(entry.low)} … ${text(entry.high)}`;
 }

@@ -2,22 +2,22 @@
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
 import type { Parts } from "../parts";
 
-/** More selected entities than this are shown by the first of them: asking for all would take long. */
+/** Of a larger selection only so many entities are asked for, because asking for all would take long. */
 const MOST_ASKED = 32;
 
-/** Whose attributes are shown and edited. */
+/** The entities or the model whose attributes are shown and edited. */
 export interface AttributeSubject {
-  /** Other rows are made for another. */
+  /** Rows are made anew for another id. */
   readonly id: string;
-  /** The attributes of each of them; what cannot be asked for is said in the note. */
+  /** The attributes of each entity; the note says what could not be loaded. */
   load(): Promise<{ sets: AttributeEntry[][]; note: string }>;
   set(name: string, value: AttributeValue): Promise<unknown>;
   reset(name: string): Promise<unknown>;
-  /** Keys of the catalogue's models that they are; none where one of them is no model. */
+  /** Keys of the catalogue's models that the entities have; empty where one of them has no model. */
   models(): string[];
 }
 
-/** What is selected in the scene: edits are of these entities only. */
+/** The selection in the scene: edits change these entities only. */
 export class SelectedEntities implements AttributeSubject {
   readonly id: string;
   private readonly indices: number[];
@@ -52,7 +52,7 @@ export class SelectedEntities implements AttributeSubject {
   }
 }
 
-/** The model picked in the catalogue: edits are of the model itself, for every scene. */
+/** The model picked in the catalogue: edits change the model itself, for every scene. */
 export class CatalogueModel implements AttributeSubject {
   readonly id: string;
 

@@ -26,7 +26,7 @@ export function openDialog(title: string, testId: string, ...contents: (Node | n
   return dialog;
 }
 
-/** Asks before work is lost; true at once where nothing would be. */
+/** Asks before unsaved changes are lost; true at once where there are none. */
 export function mayLeave(parts: Pick<Parts, "document">): Promise<boolean> {
   if (!parts.document.unsaved) return Promise.resolve(true);
   return new Promise((resolve) => {
@@ -50,13 +50,13 @@ export async function newScene(parts: Pick<Parts, "server" | "document">): Promi
   if (await mayLeave(parts)) await parts.server.command("scene.new", {});
 }
 
-/** Opens a scene from a file of the user's computer; what is wrong with it the server says, with file, line and field. */
+/** Opens a scene from a file of the user's computer; the server reports errors in it with file, line and field. */
 export async function openSceneFile(parts: Pick<Parts, "server" | "document">, file: File): Promise<void> {
   if (!(await mayLeave(parts))) return;
   await parts.server.command("scene.load", { text: await file.text(), file: file.name });
 }
 
-/** Lists what the user saved and the scenes that come with Embody. */
+/** Lists the user's saved scenes and the demo scenes. */
 export async function openScenes(parts: Pick<Parts, "server" | "document">): Promise<void> {
   const waiting = element("p", { class: "note" }, "Loading…");
   const body = element("div", { class: "scene-lists" }, waiting);
@@ -87,7 +87,7 @@ export async function openScenes(parts: Pick<Parts, "server" | "document">): Pro
           "button",
           { class: "scene-item", "data-testid": `scene-${scene.name}`, onclick: () => void load(scene.name) },
           element("span", {}, scene.title || scene.name),
-          // When an example came with the program tells nobody anything.
+          // The date of a demo scene is of no use to the user.
           kind === "demo" ? null : element("span", { class: "note" }, [nameBeside(scene), dateText(scene.modified)].filter(Boolean).join(" · ")),
         ),
       ),
@@ -103,7 +103,7 @@ export async function openScenes(parts: Pick<Parts, "server" | "document">): Pro
   body.querySelector<HTMLElement>("button")?.focus();
 }
 
-/** The name a scene is saved under, where its title does not say it. */
+/** The name that a scene is saved under, where it differs from the title. */
 function nameBeside({ kind, name, title }: SceneListing): string {
   return kind === "saved" && title && title !== name ? name : "";
 }

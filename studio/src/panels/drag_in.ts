@@ -13,7 +13,7 @@ export interface Carried {
   model: ModelSummary | null;
 }
 
-/** Dragging from a panel into the scene: a picture at the pointer, and over the scene a ghost lying on what is under it. */
+/** Drags something from a panel into the scene: a picture at the pointer, and over the scene a ghost on the surface below. */
 export class DragIn {
   readonly added = new Signal<ModelSummary>();
   private readonly ghost: Ghost;
@@ -24,7 +24,7 @@ export class DragIn {
     document.body.append(this.picture);
   }
 
-  /** Lets `source` be dragged; `carry` says what it brings. */
+  /** Makes `source` draggable; `carry` returns what is dragged. */
   from(source: HTMLElement, carry: () => Carried): void {
     source.addEventListener("pointerdown", (down) => {
       if (down.button !== 0 || (down.target as HTMLElement).closest(".favourite")) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The whole of our user interface library: makes elements. Panels keep references to what they change.
+// Our whole user interface library: functions that make elements. Panels keep references to the elements that they change.
 
 type Child = Node | string | null | undefined | false;
 type Listener = (event: never) => void;
@@ -21,12 +21,12 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Shows or hides without leaving the document. */
+/** Shows or hides an element that stays in the document. */
 export function show(shown: HTMLElement, visible: boolean): void {
   shown.hidden = !visible;
 }
 
-/** Text changes only when it is other text: cheaper, and screen readers stay quiet. */
+/** Sets the text only where it differs: cheaper, and screen readers stay quiet. */
 export function setText(target: HTMLElement, text: string): void {
   if (target.textContent !== text) target.textContent = text;
 }

@@ -15,7 +15,7 @@ const LIVE_EVERY_MS = 200;
 
 type Row = { root: HTMLElement; update(entities: Entity[]): void };
 
-/** Name, pose, size and start of the selected entities: what is theirs and not their material's. */
+/** Name, pose, size and start of the selected entities, which do not depend on their material. */
 export class EntityFields {
   readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": "Entity" });
   private rows: Row[] = [];
@@ -104,7 +104,7 @@ export class EntityFields {
     void this.parts.server.command("entity.transform", { poses });
   }
 
-  /** The lengths of a primitive, as whole widths and heights. */
+  /** The lengths of a primitive, as full widths and heights. */
   private shapeRows(shape: Shape): Row[] {
     if (!isOfLengths(shape)) return [];
     return fieldsOf(shape).map((length) => {
@@ -157,7 +157,7 @@ export class EntityFields {
   }
 
   private change(entity: NewEntity): void {
-    // However many are changed, undo takes it back at once.
+    // One undo takes back the change of all entities.
     const merge = `fields-${Date.now()}`;
     for (const index of this.parts.selection.indices) void this.parts.server.command("entity.update", { index, entity, merge });
   }
@@ -171,7 +171,7 @@ function bound<Value>(label: string, field: Field<Value>, read: (entity: Entity)
   return { root: row(label, field.root), update: (entities) => field.set(common(entities, read)) };
 }
 
-/** The value that all have, or null. */
+/** The value that all entities have, or null. */
 function common<Value>(entities: Entity[], read: (entity: Entity) => Value): Value | null {
   const first = read(entities[0]!);
   const text = JSON.stringify(first);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 import { element } from "./element";
 
-/** Beside a number of size one, anything smaller is rounding and shown as 0. */
+/** Beside numbers of size one, smaller values are rounding errors and shown as 0. */
 export const NOISE = 1e-6;
 
-/** A number as people read it: five figures, no noise; whole numbers in full. */
+/** A number for people: five significant digits, without rounding errors; whole numbers in full. */
 export function numberText(value: number): string {
   if (!Number.isFinite(value)) return value > 0 ? "∞" : value < 0 ? "-∞" : "?";
   if (value === 0) return "0";
@@ -14,7 +14,7 @@ export function numberText(value: number): string {
   return String(Number(value.toPrecision(5)));
 }
 
-/** What a person typed as a number; a comma counts as the decimal point. NaN where it is none. */
+/** Reads a typed number; a comma counts as the decimal point. NaN where the text is no number. */
 export function readNumber(text: string): number {
   const plain = text.trim().replace(",", ".").replace("∞", "Infinity");
   return plain === "" ? NaN : Number(plain);
@@ -22,13 +22,13 @@ export function readNumber(text: string): number {
 
 export interface Field<Value> {
   root: HTMLElement;
-  /** Shows a value; null where several entities differ. Left alone while its user types. */
+  /** Shows a value; null where several entities differ. Does nothing while the user types in the field. */
   set(value: Value | null): void;
-  /** Shows what is wrong with what was typed, or takes that away. */
+  /** Shows an error of the typed value; null removes it. */
   setError(reason: string | null): void;
 }
 
-/** One number. Enter or leaving commits, Escape takes back, the arrow keys change by 1 % or by `step`. */
+/** One number. Enter or leaving the field commits, Escape restores, the arrow keys change by 1 % or by `step`. */
 export function numberField(label: string, unit: string, commit: (value: number) => void, step?: number): Field<number> {
   let shown = "";
   let value: number | null = null;
@@ -76,7 +76,7 @@ export function numberField(label: string, unit: string, commit: (value: number)
       if (document.activeElement === input && input.value !== shown) return;
       value = next;
       const text = next === null ? "" : numberText(next);
-      // What was refused is no longer there to be wrong.
+      // The refused text has been replaced, so its error is removed.
       if (text !== shown) setError(null);
       shown = text;
       input.value = shown;

@@ -15,7 +15,7 @@ interface ImportAnswer {
   keys: string[];
 }
 
-/** Files from the desktop: scenes are opened; models are imported, and added where they were dropped on the scene. */
+/** Files from the desktop: scenes are opened; models are imported, and added to the scene where they were dropped. */
 export class FileDrop {
   constructor(
     private readonly parts: Pick<Parts, "server" | "notices" | "document" | "selection" | "models" | "view">,
@@ -52,7 +52,7 @@ export class FileDrop {
     }
   }
 
-  /** Sends the file to the database; the keys of the models that came of it. */
+  /** Uploads the file to the database; returns the keys of its models. */
   private async import(file: File): Promise<string[]> {
     const { notices, server } = this.parts;
     if (file.size > LARGEST_BYTES) {

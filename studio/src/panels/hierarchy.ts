@@ -4,11 +4,11 @@ import type { Entity } from "../connection/scene_types";
 import type { Parts } from "../parts";
 import { element } from "./element";
 
-/** More rows than this are not made; the filter finds the rest. */
+/** The list shows no more rows than this; the filter finds the rest. */
 const MOST_ROWS = 400;
 const DELAY_MS = 80;
 
-/** Every entity of the scene by name, to find and choose what is small, hidden or far away. */
+/** A list of all entities by name, to find and select those that are small, hidden or far away. */
 export class Hierarchy {
   readonly root: HTMLElement;
   private readonly list = element("ul", { role: "listbox", "aria-label": "Entities", "aria-multiselectable": "true", "data-testid": "hierarchy" });

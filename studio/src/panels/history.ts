@@ -8,10 +8,10 @@ import { element, setText, show } from "./element";
 
 const PAGE = 30;
 const CHANGES_SHOWN = 12;
-/** Of an act that gave all the same, one line says it. */
+/** A batch with no more changes than this shows them open; where all models got the same value, one line says it. */
 const CHANGES_OPEN = 1;
 
-/** Who changed what in the catalogue, when, newest first; each act can be taken back. Of one model, or of all. */
+/** The history of the catalogue: who changed what and when, newest first, with undo. Of one model, or of all. */
 export function openHistory(parts: Pick<Parts, "server">, model: ModelSummary | null = null): void {
   const list = element("ol", { class: "history", "data-testid": "history" });
   const none = element("p", { class: "note" }, model ? "Nobody has changed this model." : "Nobody has changed a model of the catalogue.");
@@ -43,7 +43,7 @@ function row(parts: Pick<Parts, "server">, batch: ChangeBatch, ofOne: boolean): 
   const undone = batch.undone_by !== null;
   const problem = element("p", { class: "field-error", role: "alert" });
   const undo = element("button", { "data-testid": `undo-${batch.batch}` }, isUndo ? "Redo" : "Undo");
-  // The list is asked for again once it is done; a refusal belongs beside the act.
+  // The list is loaded again after an undo; a refusal is shown beside the batch.
   undo.addEventListener("click", () => {
     undo.disabled = true;
     parts.server.request("catalog.undo", { batch: batch.batch }).catch((error: Error) => {
@@ -71,7 +71,7 @@ function row(parts: Pick<Parts, "server">, batch: ChangeBatch, ofOne: boolean): 
       element("span", { class: "history-what" }, title(batch)),
       element("span", { class: "note", title: `${batch.person} (${batch.session}), batch ${batch.batch}` }, `${who(batch)} · ${when.toLocaleString([], { dateStyle: "medium", timeStyle: "short" })}`),
     ),
-    // An undo that was itself done again, or an act that was taken back, has had its day.
+    // A batch that was undone, or an undo that was undone itself, offers no button.
     undone ? element("span", { class: "note history-state" }, "undone") : batch.undoes !== null && !isUndo ? element("span", { class: "history-state" }) : undo,
     problem,
     element("details", { open: values.length <= CHANGES_OPEN }, element("summary", {}, ofOne || batch.models === 1 ? "Values" : `${batch.models.toLocaleString("en")} models`), element("ul", {}, ...values)),
@@ -88,7 +88,7 @@ function title(batch: ChangeBatch): string {
   return `Set ${labels} of ${of}${same ? ` to ${text(first.after, first.unit)}` : ""}`;
 }
 
-/** The name that was given in the Studio; else the person's login name and the program. */
+/** The name that the user entered in the Studio; else the person's login name and the program. */
 function who({ person, session }: ChangeBatch): string {
   if (session.startsWith("studio: ")) return session.slice("studio: ".length);
   return session ? `${person} (${session})` : person;

@@ -13,7 +13,7 @@ const FAVOURITES = " favourites";
 const RECENT = " recent";
 const LISTED_BY = ["category", "subcategory", "kind"];
 
-/** The left side: what can be put into the scene. */
+/** The left panel: models that can be added to the scene. */
 export class ModelBrowser {
   readonly root: HTMLElement;
   private readonly words = element("input", {
@@ -55,7 +55,7 @@ export class ModelBrowser {
     parts.server.changed.on(() => {
       if (parts.server.isOpen) this.refresh();
     });
-    // Models are listed by these, so that they may be elsewhere now.
+    // Categories and search use these attributes, so that the results may have changed.
     parts.server.catalogChanged.on(({ attributes }) => {
       if (!attributes.some((name) => LISTED_BY.includes(name))) return;
       void this.loadCategories();
@@ -68,7 +68,7 @@ export class ModelBrowser {
     this.words.select();
   }
 
-  /** Models may be new: asks again for categories and the present search. */
+  /** Models may have been added: asks again for categories and the present search. */
   refresh(): void {
     void this.loadCategories();
     this.search();

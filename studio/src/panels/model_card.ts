@@ -2,7 +2,7 @@
 import type { Parts } from "../parts";
 import { element } from "./element";
 
-/** Which model of the database it is, by whom and under which licence. */
+/** A model's name, author and licence. */
 export function modelCard(parts: Pick<Parts, "models">, key: string): HTMLElement {
   const card = element("div", { class: "model-card", "data-testid": "model-card" });
   parts.models.summary(key).then((model) => {

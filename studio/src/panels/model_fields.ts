@@ -6,7 +6,7 @@ import { element, show } from "./element";
 import { openHistory } from "./history";
 import { modelCard } from "./model_card";
 
-/** The model that was picked in the browser: what it is, and what can be done with it. */
+/** The model that was picked in the browser: its data, and actions on it. */
 export class ModelFields {
   readonly root = element("section", { class: "entity", "data-testid": "model-fields", "aria-label": "Model" });
 

@@ -11,7 +11,7 @@ import { icon } from "../tools/icons";
 const PAGE = 60;
 const TILE_WIDTH = 92;
 const TILE_HEIGHT = 118;
-/** Rows kept ready above and below what is seen. */
+/** Rows that are made in advance above and below the visible ones. */
 const SPARE_ROWS = 2;
 
 interface Search {
@@ -19,7 +19,7 @@ interface Search {
   category: string;
 }
 
-/** Thumbnails of any number of models: only the tiles in sight exist, and only the pages in sight are asked for. */
+/** Thumbnails of any number of models: only the visible tiles exist, and only the visible pages are asked for. */
 export class ModelGrid {
   readonly root: HTMLElement;
   readonly counted = new Signal<number>();
@@ -63,7 +63,7 @@ export class ModelGrid {
     void this.loadPage(0);
   }
 
-  /** Shows these models and no others; ones that are gone from the database are left out. */
+  /** Shows exactly these models; models that are no longer in the database are left out. */
   async showKeys(keys: readonly string[]): Promise<void> {
     this.keys = keys;
     this.restart();
@@ -75,7 +75,7 @@ export class ModelGrid {
     this.setTotal(models.length);
   }
 
-  /** Asks again for what is in sight; its place stays. */
+  /** Loads the visible tiles again; the scroll position stays. */
   renew(): void {
     if (this.keys) return void this.showKeys(this.keys);
     ++this.generation;
@@ -134,7 +134,7 @@ export class ModelGrid {
     return Math.max(1, Math.floor(this.root.clientWidth / TILE_WIDTH));
   }
 
-  /** Makes the tiles that are in sight and drops the others. */
+  /** Makes the visible tiles and removes the others. */
   private lay(): void {
     const columns = this.columns;
     this.canvas.style.height = `${Math.ceil(this.total / columns) * TILE_HEIGHT}px`;
@@ -238,7 +238,7 @@ export class ModelGrid {
     event.preventDefault();
   }
 
-  /** Makes one tile the one that Enter adds, brings it into sight, and shows what its model is made of. */
+  /** Makes one tile the active one, which Enter adds, scrolls it into view, and shows the model's attributes. */
   private activate(at: number): void {
     this.tiles.get(this.active)?.setAttribute("aria-selected", "false");
     this.active = at;

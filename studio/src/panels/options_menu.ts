@@ -20,14 +20,14 @@ const DEBUG_LABELS: Record<DebugName, string> = {
   trees: "Broad phase",
 };
 
-/** Such as "1,234 lines and 56 points not drawn"; empty where all is. */
+/** For example "1,234 lines and 56 points not drawn"; empty where all are drawn. */
 function leftOutText({ lines, points }: { lines: number; points: number }): string {
   const counted = (count: number, name: string) => (count === 0 ? [] : [`${count.toLocaleString("en")} ${name}${count === 1 ? "" : "s"}`]);
   const parts = [...counted(lines, "line"), ...counted(points, "point")];
   return parts.length === 0 ? "" : `${parts.join(" and ")} not drawn`;
 }
 
-/** What the solver sees: a box to tick for each, and how much of it a frame has no room for. */
+/** Debug drawing: a checkbox for each kind, and how much did not fit into the frame. */
 function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): { root: HTMLElement; end: () => void } {
   const line = (name: DebugName) => {
     const flip = () => preferences.set("debug", DEBUG_NAMES.filter((each) => preferences.get("debug").includes(each) !== (each === name)));
@@ -46,7 +46,7 @@ function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): 
   return { root, end: view.debug.changed.on(tell) };
 }
 
-/** How the picture looks and how snapping works; kept in the browser. */
+/** Options of drawing and snapping; kept in the browser. */
 export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view">, actions: readonly UserAction[]): void {
   const { preferences } = parts;
   const row = (label: string, field: HTMLElement) => element("label", { class: "option" }, field, element("span", {}, label));

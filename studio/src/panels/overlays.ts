@@ -2,7 +2,7 @@
 import type { Parts } from "../parts";
 import { element, show } from "./element";
 
-/** What lies over the scene: the legend of states, loading, an empty scene's advice, and the lost connection. */
+/** Overlays of the scene: the legend of states, the loading bar, hints for an empty scene, and the lost connection. */
 export class Overlays {
   readonly root: HTMLElement;
   private readonly legend = element(
@@ -45,7 +45,7 @@ export class Overlays {
     show(this.legend, parts.preferences.get("tint") && parts.playback.simulation.state !== "stopped");
     show(this.loading, parts.entities.loading > 0 || (!parts.server.ready && !this.everConnected));
     this.loading.textContent = parts.server.ready ? `Loading ${parts.entities.loading} models…` : "Connecting…";
-    // A new scene has a floor and nothing else.
+    // A new scene has only a floor.
     const { entities } = parts.document;
     const bare = entities.size <= 1 && [...entities.values()].every(({ shape, attributes }) => shape?.type === "plane" || attributes?.["kind"] === "static");
     show(this.advice, parts.server.ready && open && bare && parts.playback.simulation.state === "stopped");

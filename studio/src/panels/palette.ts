@@ -5,7 +5,7 @@ import { keysOf } from "../tools/keys";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
 
-/** Every command by name: type a part, Enter runs the marked one. */
+/** The command palette: type a part of a name, Enter runs the marked command. */
 export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly UserAction[]): void {
   let marked = 0;
   let found: UserAction[] = [];

@@ -7,10 +7,10 @@ import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 
 const WORLD = "";
-/** Of a large scene only so many are offered to pin to. */
+/** In a large scene only so many entities are offered to pin to. */
 const MOST_HOLDERS = 300;
 
-/** Where the selected cloth, rope or soft thing is held, and by what. */
+/** The pins of the selected cloth, rope or soft thing, and the entities that hold them. */
 export class PinFields {
   readonly root: HTMLElement;
   private readonly buttons = element("div", { class: "pin-buttons" });
@@ -20,7 +20,7 @@ export class PinFields {
   private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: "Holds the rope's direction and its turn about itself too" }, "Clamped"), this.clamped);
   private index = 0;
   private mesh: SimulationMesh | null = null;
-  /** The next click on the thing pins it there. */
+  /** The next click on the entity pins it there. */
   private picking = false;
 
   constructor(private readonly parts: Pick<Parts, "server" | "document" | "playback" | "selection" | "entities" | "view">) {
@@ -46,7 +46,7 @@ export class PinFields {
     return selection.indices.length === 1 ? (document.entities.get(selection.indices[0]!) ?? null) : null;
   }
 
-  /** Shows what is selected, if it bends. */
+  /** Shows the selected entity, if it is deformable. */
   private async follow(): Promise<void> {
     const { entity, parts } = this;
     const index = entity && parts.entities.softs.has(entity.index) ? entity.index : 0;
@@ -57,7 +57,7 @@ export class PinFields {
       this.index = index;
       this.mesh = null;
       const told = index ? await parts.server.command("entity.simulation_mesh", { index }) : undefined;
-      // What is selected may have changed while the answer was on its way.
+      // The selection may have changed while the answer was on its way.
       if (this.index !== index) return;
       this.mesh = told?.mesh ?? null;
       this.offer();

@@ -2,10 +2,10 @@
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 
-/** Nothing more heard of long work for so long: it is done. */
+/** Without news for so long, a long command is taken as done. */
 const PROGRESS_SHOWN_MS = 1200;
 
-/** The line at the bottom: what the simulation does and costs, and whether the server is there. */
+/** The line at the bottom: state and cost of the simulation, and the connection to the server. */
 export class StatusBar {
   readonly root: HTMLElement;
   private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
@@ -51,7 +51,7 @@ export class StatusBar {
     this.update();
   }
 
-  /** Long work on the server; whoever began it can stop it. */
+  /** Progress of a long command on the server; the client that started it can stop it. */
   private showWork(text: string, mayStop: boolean): void {
     setText(this.work, text);
     show(this.work, text !== "");
@@ -70,10 +70,10 @@ export class StatusBar {
     this.put("state", { stopped: "Stopped", playing: "Playing", paused: "Paused" }[simulation.state]);
     this.put("time", `${Math.max(simulation.time, 0).toFixed(2)} s`);
     this.put("hint", this.parts.server.ready ? "Press Space to play" : "");
-    // Before the first step there is nothing to measure.
+    // Before the first step nothing is measured.
     const begun = simulation.state !== "stopped";
     for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
-    // How fast single steps follow each other says how fast a person presses a key.
+    // The rate of single steps would show how fast a person presses a key.
     show(this.cells.get("rate")!, simulation.state === "playing");
     this.put("active", statistics ? `${statistics.active} of ${statistics.things} active` : "– active");
     const points = statistics?.points ?? 0;

@@ -5,7 +5,7 @@ import { element } from "./element";
 import { icon } from "../tools/icons";
 
 const SHOWN_MS = { info: 3500, warning: 8000, error: 12000 };
-/** A message with a button stays until its reader has decided. */
+/** A message with a button stays longer, so that its reader can decide. */
 const WITH_ACTION_MS = 12000;
 const MOST = 4;
 
@@ -18,7 +18,7 @@ export class Toasts {
   }
 
   private show(notice: Notice): void {
-    // The same message again only stays longer.
+    // The same message again replaces the old one, and so stays longer.
     for (const other of this.root.children) if (other.getAttribute("data-text") === notice.text) other.remove();
     const toast = element(
       "div",

@@ -15,7 +15,7 @@ const GROUPS = [
 ];
 const GROUPS_RIGHT = [["catalog.history"], ["view.tint", "view.options", "view.screenshot", "view.palette", "view.help"]];
 
-/** The bar at the top: one button an action, and the scene's own buttons. */
+/** The bar at the top: a button for each action, and the scene's own buttons. */
 export class Toolbar {
   readonly root: HTMLElement;
   private readonly title = element("button", { class: "scene-title", title: "Rename: save under a name", "data-testid": "scene-title" });
@@ -62,7 +62,7 @@ export class Toolbar {
         "data-testid": action.id,
         onclick: (event: MouseEvent) => {
           action.run();
-          // After a click keys are the scene's again; whoever came by keyboard stays.
+          // After a click the keyboard focus returns to the scene; after a key press it stays on the button.
           if (event.detail > 0 && !document.querySelector("dialog[open]")) this.parts.view.canvas.focus();
         },
       },
@@ -100,7 +100,7 @@ export class Toolbar {
     return action && this.buttons.get(action);
   }
 
-  /** One for each named button that an action of the scene waits for. */
+  /** A button for each name that an action of the scene waits for. */
   private showSceneButtons(): void {
     const names = new Set<string>();
     for (const { trigger } of this.parts.document.actions.values()) if (trigger.type === "signal" && trigger.button) names.add(trigger.button);

@@ -2,7 +2,7 @@
 import type { Parts } from "../parts";
 import { element } from "./element";
 
-/** What the history of changes calls this browser's user; kept in the browser. */
+/** This user's name in the history of changes; kept in the browser. */
 export function userNameField(parts: Pick<Parts, "preferences" | "server">): HTMLInputElement {
   const input = element("input", {
     type: "text",

@@ -5,22 +5,22 @@ import { addInFront } from "./ghost";
 import type { Gizmo } from "./gizmo";
 import { PRIMITIVES } from "./primitives";
 
-/** Something the user can ask for: by button, key or command palette. */
+/** A command for the user: by button, key or command palette. */
 export interface UserAction {
   id: string;
   label: string;
   group: string;
-  /** As keyName() writes them; the first is shown. */
+  /** Names as keyName() writes them; the first is shown. */
   keys: string[];
   icon?: IconName;
-  /** Whether it makes sense now; always where missing. */
+  /** Whether the action can be used now; missing: always. */
   possible?: () => boolean;
   /** For switches: whether it is on. */
   on?: () => boolean;
   run: () => void;
 }
 
-/** Opens what lies over the page; the panels give these. */
+/** Functions that open dialogs and panels; the panels provide them. */
 export interface Openers {
   scenes(): void;
   saveAs(): void;
@@ -65,7 +65,7 @@ function sceneActions(parts: Pick<Parts, "server" | "notices" | "document">, ope
 }
 
 async function save(parts: Pick<Parts, "server" | "notices" | "document">, open: Openers): Promise<void> {
-  // A scene that has no name yet asks for one.
+  // A scene without a name asks for one.
   if (!parts.document.name) return open.saveAs();
   const saved = await parts.server.command("scene.save", {});
   if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });

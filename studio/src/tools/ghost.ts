@@ -6,19 +6,19 @@ import type { Parts } from "../parts";
 import type { Drawable } from "../view/drawable";
 import { drawShape } from "../view/shapes";
 
-/** Distance from the eye at which things arrive where no surface is, m. */
+/** Distance from the eye at which entities are added where no surface is, m. */
 const REACH = 5;
 const FARTHEST_GROUND = 100;
-/** Cosine: up to 60° a surface is one to lie on. */
+/** Cosine of the steepest slope, 60°, that an entity is laid on. */
 const STEEPEST_FLOOR = 0.5;
 const UP = new Vector3(0, 1, 0);
 
-/** What will be added lies, half transparent, on the surface under the pointer. The server places the real one. */
+/** A half transparent preview of an entity on the surface under the pointer. The server places the real entity. */
 export class Ghost {
   private readonly group = new Group();
   private readonly material = new MeshBasicMaterial({ color: 0x4fc3f7, transparent: true, opacity: 0.45, depthWrite: false });
   private drawable: Drawable | null = null;
-  /** Of what is drawn, turned as the entity will be. */
+  /** Box around the drawn entity, rotated as the entity will be. */
   private readonly bounds = new Box3();
 
   constructor(private readonly parts: Pick<Parts, "models" | "view">) {
@@ -26,7 +26,7 @@ export class Ghost {
     parts.view.scene.add(this.group);
   }
 
-  /** Begins with this entity; a model's ghost appears when its picture is here. */
+  /** Starts with this entity; a model's ghost appears once the model is loaded. */
   async begin(entity: NewEntity): Promise<void> {
     this.end();
     const drawable = entity.model ? await this.parts.models.drawable(entity.model) : drawShape(entity.shape!);
@@ -41,7 +41,7 @@ export class Ghost {
     }
   }
 
-  /** Lies on what is under the pointer. */
+  /** Moves the ghost to the surface under the pointer. */
   moveTo(clientX: number, clientY: number): void {
     const { view } = this.parts;
     if (!this.drawable) return;
@@ -50,7 +50,7 @@ export class Ghost {
     this.group.position.copy(point);
     if (normal.y > STEEPEST_FLOOR) this.group.position.y -= bounds.min.y;
     else {
-      // At a wall or ceiling it is pushed off by what of it would be behind the surface.
+      // At a wall or ceiling it is moved away from the surface by the depth that would be behind it.
       const half = bounds.getSize(new Vector3()).multiplyScalar(0.5);
       const reach = Math.abs(normal.x) * half.x + Math.abs(normal.y) * half.y + Math.abs(normal.z) * half.z;
       this.group.position.addScaledVector(normal, reach).sub(bounds.getCenter(new Vector3()));
@@ -85,7 +85,7 @@ export class Ghost {
 export async function addUnder(parts: Pick<Parts, "server" | "selection" | "view">, entity: NewEntity, clientX: number, clientY: number): Promise<void> {
   const { origin, direction } = parts.view.ray(clientX, clientY);
   const drop = { origin: origin.toArray(), direction: direction.toArray() };
-  // A plane is endless: it has its own place and lies on nothing.
+  // A plane is infinite: it has a fixed pose and lies on nothing.
   const params = entity.shape?.type === "plane" ? { entity } : { entity, drop };
   const added = await parts.server.command("entity.add", params);
   if (added) parts.selection.set([added.index]);

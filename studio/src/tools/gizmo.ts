@@ -23,7 +23,7 @@ export class Gizmo {
   private readonly delta = new Matrix4();
   private readonly matrix = new Matrix4();
   private readonly size = new Vector3();
-  /** Shift turns snapping over for as long as it is held. */
+  /** Shift is held, which reverses snapping. */
   private turned = false;
 
   constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "selection" | "motion" | "entities" | "view">) {
@@ -48,7 +48,7 @@ export class Gizmo {
     this.applySnap();
   }
 
-  /** A handle is under the pointer or in the hand: the click is the gizmo's. */
+  /** A handle is under the pointer or being dragged: the click belongs to the gizmo. */
   get busy(): boolean {
     return this.controls.dragging || (this.controls.axis !== null && this.controls.object !== undefined);
   }
@@ -74,7 +74,7 @@ export class Gizmo {
     } else {
       this.place(performance.now());
       this.controls.setMode(this.tool === "move" ? "translate" : this.tool);
-      // Only uniform scale keeps a model what it is.
+      // A model can only be scaled uniformly.
       const uniform = this.tool === "scale";
       this.controls.showX = this.controls.showY = this.controls.showZ = !uniform;
       this.controls.attach(this.pivot);
@@ -82,7 +82,7 @@ export class Gizmo {
     this.parts.view.invalidate();
   }
 
-  /** Keeps the handles at the last chosen entity while it moves. */
+  /** Keeps the handles at the last selected entity while it moves. */
   private place(now: number): void {
     const last = this.parts.selection.indices.at(-1);
     if (last === undefined || this.controls.dragging) return;
@@ -108,7 +108,7 @@ export class Gizmo {
         this.matrix.decompose(pose.position, pose.rotation, this.size);
         pose.scale = start.scale * factor;
       });
-    // A scale is a change of the entity itself, sent once when the hand lets go.
+    // A scale changes the entity itself and is sent once, when the drag ends.
     if (this.tool !== "scale") drag.send();
   }
 

@@ -3,7 +3,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "./actions";
 import type { Pointer } from "./pointer";
 
-/** How a key is called here and in scene files: "Ctrl+Shift+Z", "Space", ".", "W". */
+/** The name of a key here and in scene files: "Ctrl+Shift+Z", "Space", ".", "W". */
 export function keyName(event: KeyboardEvent): string {
   const key = event.key === " " ? "Space" : event.key.length === 1 ? event.key.toUpperCase() : event.key;
   const letter = /^[A-Z]$/.test(key) || key.length > 1;
@@ -11,13 +11,13 @@ export function keyName(event: KeyboardEvent): string {
   return modifiers.join("") + key;
 }
 
-/** The keys of an action: the user's own choice, or the ones it comes with. */
+/** The keys of an action: the user's choice, or the action's own. */
 export function keysOf(parts: Pick<Parts, "preferences">, action: UserAction): string[] {
   const chosen = parts.preferences.get("keys")[action.id];
   return chosen ? [chosen] : action.keys;
 }
 
-/** Keys on the page become actions. */
+/** Runs actions by keys. */
 export class Keyboard {
   constructor(
     private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "playback">,
@@ -33,13 +33,13 @@ export class Keyboard {
     if (this.triggerSceneAction(name, event)) return;
     const action = this.actions.find((each) => keysOf(this.parts, each).includes(name));
     if (!action || (event.repeat && action.id !== "simulation.step")) return;
-    // A focused button keeps its own Space and Enter.
+    // Space and Enter press a button that has the focus.
     if ((name === "Space" || name === "Enter") && event.target instanceof HTMLButtonElement) return;
     event.preventDefault();
     if (action.possible?.() ?? true) action.run();
   }
 
-  /** While the scene plays, its own keys come first. */
+  /** While the scene plays, the keys of its actions come first. */
   private triggerSceneAction(name: string, event: KeyboardEvent): boolean {
     if (!this.parts.playback.playing || event.repeat) return false;
     const known = [...this.parts.document.actions.values()].map(({ trigger }) => (trigger.type === "signal" ? trigger.key : undefined)).find((key) => key?.toUpperCase() === name.toUpperCase());

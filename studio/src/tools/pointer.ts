@@ -17,9 +17,9 @@ type Gesture =
   | { kind: "grab"; plane: Plane; sending: boolean; newer: Vector3 | null }
   | { kind: "slide"; plane: Plane; from: Vector3; drag: PoseDrag };
 
-/** What the mouse does on the picture: choose, drag, pull bodies while they move, and move the camera. */
+/** The mouse on the picture: selects, drags, pulls bodies while they move, and moves the camera. */
 export class Pointer {
-  /** The right button is down: letters fly instead of choosing tools. */
+  /** The right button is down: letter keys move the camera instead of choosing tools. */
   flying = false;
   private gesture: Gesture | null = null;
   private startX = 0;
@@ -81,7 +81,7 @@ export class Pointer {
     else if (gesture.kind === "box") this.stretchBox(gesture.frame, event);
   }
 
-  /** A press has become a drag; what it drags depends on what is under it. */
+  /** A press has become a drag; what is under it decides what it drags. */
   private beginDrag(hit: Hit | null, event: PointerEvent): void {
     const { parts } = this;
     const movable = hit !== null && this.isMovable(hit.index);
@@ -124,7 +124,7 @@ export class Pointer {
     gesture.sending = false;
   }
 
-  /** Drags what is under the pointer along the level of its surface. */
+  /** Drags the entity under the pointer in the plane of the surface point that was pressed. */
   private beginSlide(hit: Hit): void {
     const { selection } = this.parts;
     if (!selection.has(hit.index)) selection.set([hit.index]);
@@ -182,7 +182,7 @@ export class Pointer {
     frame.style.height = `${Math.abs(event.clientY - this.startY)}px`;
   }
 
-  /** Adds every entity whose centre lies in the rectangle. */
+  /** Selects every entity whose centre lies in the rectangle, too. */
   private chooseInBox(frame: HTMLElement): void {
     const { view, entities, document, selection } = this.parts;
     const box = frame.getBoundingClientRect();

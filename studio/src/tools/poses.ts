@@ -9,7 +9,7 @@ export interface HeldPose {
   scale: number;
 }
 
-/** Where entities are drawn now. */
+/** The poses at which entities are drawn now. */
 export function presentPoses(parts: Pick<Parts, "entities">, indices: Iterable<number>): Map<number, HeldPose> {
   const poses = new Map<number, HeldPose>();
   const matrix = new Matrix4();
@@ -25,7 +25,7 @@ export function presentPoses(parts: Pick<Parts, "entities">, indices: Iterable<n
 }
 
 /**
- * One drag of entities by the user. They follow the pointer at once; the server hears of it as fast as it answers, all under
+ * One drag of entities by the user. They follow the pointer at once; poses are sent as fast as the server answers, all with
  * one merge key, so that one undo takes the drag back.
  */
 export class PoseDrag {
@@ -45,7 +45,7 @@ export class PoseDrag {
   }
 
 
-  /** Draws an entity here. Call send() after all of them. */
+  /** Draws an entity at the changed pose. Call send() after all of them. */
   hold(index: number, change: (pose: HeldPose, start: HeldPose) => void): void {
     const held = this.parts.entities.held.get(index);
     const start = this.start.get(index);
@@ -55,7 +55,7 @@ export class PoseDrag {
     this.parts.view.invalidate();
   }
 
-  /** Tells the server where they are now; at most one message is on its way. */
+  /** Sends the poses to the server; at most one message is on its way. */
   send(): void {
     this.newer = true;
     if (this.sending) return;
@@ -66,7 +66,7 @@ export class PoseDrag {
     });
   }
 
-  /** Lets go once the server has the last pose, so that nothing jumps back in between. */
+  /** Ends once the server has the last pose, so that no entity jumps back in between. */
   async end(): Promise<void> {
     while (this.sending) await this.sending;
     for (const [index] of this.start) {

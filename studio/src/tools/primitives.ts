@@ -15,17 +15,17 @@ function primitive(label: string, drawing: string, shape: Shape): Primitive {
   return { name: shape.type, label, drawing, entity: () => ({ shape }) };
 }
 
-/** A primitive whose kind says how it behaves. */
+/** A primitive whose physical kind is set. */
 function ofKind(name: string, kind: string, label: string, drawing: string, shape: Shape, pose?: Pose): Primitive {
   return { name, label, drawing, entity: () => ({ name: label, shape, attributes: { kind }, ...(pose ? { pose } : {}) }) };
 }
 
-/** A primitive that is what its category says. */
+/** A primitive whose attributes follow from its category. */
 function ofCategory(category: string, label: string, drawing: string, shape: Shape): Primitive {
   return { name: category, label, drawing, entity: () => ({ name: label, shape, category }) };
 }
 
-/** The analytical models, at the size of things one holds in two hands. */
+/** The primitives, at the size of things that are held with two hands. */
 export const PRIMITIVES: readonly Primitive[] = [
   ...Object.entries(SHAPES_OF_LENGTHS).map(([type, { label, drawing, offered }]) => primitive(label, drawing, { type, ...offered } as ShapeOfLengths)),
   ofKind("cloth", "cloth", "Cloth", "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),

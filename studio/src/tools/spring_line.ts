@@ -6,7 +6,7 @@ import type { Parts } from "../parts";
 export class SpringLine {
   private readonly ends = [new Vector3(), new Vector3()];
   private readonly line = new Line(new BufferGeometry().setFromPoints(this.ends), new LineBasicMaterial({ color: 0xff9d2e, depthTest: false, transparent: true }));
-  /** Where it holds the body, in the body's own frame. */
+  /** The point of the body that the spring pulls at, in the body's frame. */
   private readonly hook = new Vector3();
   private readonly matrix = new Matrix4();
   private index: number | null = null;
@@ -20,7 +20,7 @@ export class SpringLine {
     parts.view.beforeFrame.on((now) => this.follow(now));
   }
 
-  /** Holds body `index` at a point of the world. */
+  /** Attaches the spring to body `index` at a point of the world. */
   begin(index: number, point: Vector3): void {
     if (!this.parts.entities.matrixOf(index, performance.now(), this.matrix)) return;
     this.index = index;

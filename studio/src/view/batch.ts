@@ -5,7 +5,7 @@ import { type Quality, tintable } from "./tint";
 
 const placed = new Matrix4();
 
-/** All entities that look the same, drawn with one call a part. */
+/** All entities that look the same, drawn with one call for each part. */
 export class Batch {
   private meshes: InstancedMesh<BufferGeometry, Material | Material[]>[] = [];
   private readonly slots: number[] = [];
@@ -100,7 +100,7 @@ export class Batch {
   private grow(capacity: number): void {
     const before = this.meshes;
     this.meshes = this.drawable.parts.map((part, at) => {
-      // The instanced attributes lie in the geometry, so each batch has its own one around the shared buffers.
+      // The instanced attributes are part of the geometry, so each batch has its own geometry around the shared buffers.
       const geometry = sharing(part.geometry);
       geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(capacity * 4), 4).setUsage(DynamicDrawUsage));
       const material = tintable(part.material, this.quality, !this.drawable.isCloth);
@@ -118,7 +118,7 @@ export class Batch {
       mesh.count = this.slots.length;
       mesh.castShadow = this.drawable.castsShadow && !part.material.transparent;
       mesh.receiveShadow = true;
-      // Bounds would have to be found again with every step; whole batches are rarely out of sight.
+      // Bounds would have to be computed again in every step; whole batches are rarely out of view.
       mesh.frustumCulled = false;
       mesh.userData["batch"] = this;
       this.group.add(mesh);
@@ -136,12 +136,12 @@ export class Batch {
 }
 
 /**
- * Of folds behind each other only the nearest lets through what is behind the cloth: first all of it goes into the depth buffer alone.
- * In whatever order its triangles come, they would else hide each other here and there.
+ * Of folds behind each other only the nearest is drawn, half transparent: the cloth first fills the depth buffer alone.
+ * Otherwise the order of the triangles would decide which of them hide each other.
  */
 function drawNearestOnly(mesh: InstancedMesh<BufferGeometry, Material | Material[]>, material: Material): void {
   material.forceSinglePass = true;
-  // Transparent, so that it is drawn together with the other, which comes second.
+  // Transparent, so that it is drawn in the same pass as the visible mesh, which comes second.
   const depth = new MeshBasicMaterial({ colorWrite: false, transparent: true, side: material.side, forceSinglePass: true });
   mesh.material = [depth, material];
   for (const which of [0, 1]) mesh.geometry.addGroup(0, Infinity, which);

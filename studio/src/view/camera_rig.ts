@@ -10,7 +10,7 @@ const FARTHEST = 2000;
 const FLY_TIME_MS = 250;
 const HIGHEST = Math.PI - 0.02;
 const LOWEST = 0.02;
-/** Upright angle of view in degrees, while the picture is at least this many times as wide as high. */
+/** Vertical angle of view in degrees, while the picture is at least this many times as wide as high. */
 const VIEW_ANGLE = 45;
 const USUAL_ASPECT = 1.4;
 
@@ -20,7 +20,7 @@ export class CameraRig {
   readonly target = new Vector3(0, 0.5, 0);
   readonly changed = new Signal<void>();
   private readonly arm = new Spherical(6, 1.15, 0.6);
-  /** Metres a second along right, up, back while flying. */
+  /** Metres per second to the right, up and back while flying. */
   private readonly flight = new Vector3();
   private glide: { fromTarget: Vector3; toTarget: Vector3; fromRadius: number; toRadius: number; start: number } | null = null;
   private readonly step = new Vector3();
@@ -33,7 +33,7 @@ export class CameraRig {
     return this.arm.radius;
   }
 
-  /** Fits the picture's shape; in a narrow one as much is seen from left to right as in a usual one. */
+  /** Takes over the picture's aspect; in a narrow picture the horizontal angle of view stays the usual one. */
   fit(aspect: number): void {
     this.camera.aspect = aspect;
     const slope = Math.tan((VIEW_ANGLE * Math.PI) / 360) * Math.max(1, USUAL_ASPECT / aspect);
@@ -47,7 +47,7 @@ export class CameraRig {
     this.apply();
   }
 
-  /** Moves the target so that what is under the pointer stays under it; `height` is the canvas's, in pixels. */
+  /** Moves the target so that the point under the pointer stays under it; `height` is the canvas's, in pixels. */
   pan(dx: number, dy: number, height: number): void {
     const metresPerPixel = (2 * this.arm.radius * Math.tan((this.camera.fov * Math.PI) / 360)) / height;
     this.step.setFromMatrixColumn(this.camera.matrix, 0).multiplyScalar(-dx * metresPerPixel);
@@ -62,7 +62,7 @@ export class CameraRig {
     this.apply();
   }
 
-  /** Turns the head: the camera stays, the target swings round it. */
+  /** Rotates the view: the camera stays, the target moves around it. */
   look(dx: number, dy: number): void {
     const eye = this.camera.position.clone();
     this.arm.theta -= dx * LOOK_PER_PIXEL;
@@ -78,7 +78,7 @@ export class CameraRig {
     this.changed.emit();
   }
 
-  /** Glides, or jumps, until the box fills most of the picture. */
+  /** Moves smoothly, or jumps, until the box fills most of the picture. */
   focus(bounds: Box3, now: number, jump = false): void {
     if (bounds.isEmpty()) return;
     const radius = Math.max(0.5 * bounds.getSize(this.step).length(), 0.1);
@@ -104,7 +104,7 @@ export class CameraRig {
     this.apply();
   }
 
-  /** Goes on with flying and gliding; returns whether there is more to come. */
+  /** Continues flights and smooth moves; returns whether they go on. */
   advance(now: number, seconds: number): boolean {
     const flying = this.flight.lengthSq() > 0;
     if (flying) {

@@ -16,7 +16,7 @@ interface Shown {
   pieces: { object: Mesh | LineSegments; local: Matrix4 }[];
 }
 
-/** What collides, drawn through what is seen: each convex part in a colour of its own. */
+/** Collision shapes, drawn over the picture: each convex part in a colour of its own. */
 export class CollisionOverlay {
   readonly group = new Group();
   private shown: Shown[] = [];
@@ -26,7 +26,7 @@ export class CollisionOverlay {
 
   constructor(private readonly entities: EntityView) {}
 
-  /** Draws these shapes and no others; a shape is in its entity's frame, with the entity's scale in it. */
+  /** Draws exactly these shapes; a shape is in its entity's frame, with the entity's scale applied. */
   show(shapes: readonly { index: number; shape: Shape }[]): void {
     for (const { drawable, pieces } of this.shown) {
       for (const { object } of pieces) {
@@ -39,16 +39,16 @@ export class CollisionOverlay {
     this.shown = shapes.map(({ index, shape }) => this.draw(index, shape));
   }
 
-  /** How many parts of different colour are drawn. */
+  /** Number of convex parts that are drawn. */
   get parts(): number {
     return this.shown.reduce((sum, { drawable }) => sum + drawable.parts.length, 0);
   }
 
-  /** Follows the entities. */
+  /** Moves the shapes to the entities' present poses. */
   update(now: number): void {
     for (const { index, pieces } of this.shown) {
       const drawn = this.entities.matrixOf(index, now, this.matrix);
-      // The scale is in the shape already.
+      // The shape has the scale already.
       if (drawn) {
         this.matrix.decompose(this.position, this.rotation, new Vector3());
         this.matrix.compose(this.position, this.rotation, ONE);

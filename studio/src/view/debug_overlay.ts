@@ -3,19 +3,19 @@ import { BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineS
 import type { DebugBatch, DebugFrame } from "../connection/debug_frame";
 import { Signal } from "../signal";
 
-/** On the page, in pixels. */
+/** Size of a point on the page, in pixels. */
 const POINT_SIZE = 5;
-/** Of what sleeps or matters less. */
+/** Brightness of lines and points of sleeping bodies, or that matter less. */
 const DIMMED = 0.4;
-/** By meaning, as docs/protocol.md numbers them; null: a colour for each number. */
+/** Colours by meaning, as docs/protocol.md numbers them; null: a colour for each number. */
 const COLORS: readonly (number | null)[] = [
   0x6f86a0, 0x9a7fd0, 0xff5a4d, 0x4fd36b, 0x9aa0a6, 0xd8b04a, 0xffd23e, 0x4dc3ff, 0xff8a3c, null, 0xe6e6e6, null, 0xff6ad5, 0xffffff, null, 0x38a6ff, 0xffe08a, 0x7fd1c0, 0xff9ad0, null,
 ];
-/** X, Y and Z. */
+/** Colours of the axes X, Y and Z. */
 const AXIS_COLORS = [0xff4d4d, 0x5fdc5f, 0x5a8dff];
 const AXIS_MEANINGS = [11, 14];
 
-/** What the solver sees, drawn over the picture. */
+/** Debug drawings of the solver, over the picture. */
 export class DebugOverlay {
   readonly group = new Group();
   private readonly lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true, depthTest: false, transparent: true }));
@@ -25,7 +25,7 @@ export class DebugOverlay {
   );
   /** Lines and points of each meaning that are drawn, for tests. */
   counts: Record<number, { lines: number; points: number }> = {};
-  /** What the frame left out, as a frame has a limit. */
+  /** Lines and points that the frame left out because its size is limited. */
   leftOut = { lines: 0, points: 0 };
   /** Another frame is drawn, or none. */
   readonly changed = new Signal<void>();
@@ -41,7 +41,7 @@ export class DebugOverlay {
     this.show(null);
   }
 
-  /** Draws this frame and no other; null: nothing. */
+  /** Draws exactly this frame; null: nothing. */
   show(frame: DebugFrame | null): void {
     const batches = frame?.batches ?? [];
     this.counts = {};

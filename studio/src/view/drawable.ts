@@ -13,17 +13,17 @@ export interface Drawable {
   parts: DrawablePart[];
   bounds: Box3;
   castsShadow: boolean;
-  /** Faces are seen from behind too. */
+  /** Faces are drawn from both sides. */
   hasTwoSides?: boolean;
-  /** It lies in folds, which turn away from the eye everywhere. */
+  /** It is cloth: its folds have faces seen edge-on everywhere. */
   isCloth?: boolean;
 }
 
-/** Whether a geometry has an inside: each edge of a triangle is another one's, the other way round. */
+/** Whether a geometry is a closed surface: each edge belongs to two triangles, in opposite directions. */
 export function isClosed(geometry: BufferGeometry): boolean {
   const position = geometry.getAttribute("position");
   const count = geometry.index?.count ?? position.count;
-  // Vertices with several normals lie at one place.
+  // Vertices with different normals can have the same position.
   const places = new Map<string, number>();
   const placeOf = (corner: number): number => {
     const v = geometry.index?.getX(corner) ?? corner;
@@ -55,7 +55,7 @@ export function drawable(parts: DrawablePart[], castsShadow = true): Drawable {
   return { parts, bounds, castsShadow };
 }
 
-/** Of a drawable whose materials are those of another. */
+/** Disposes of the geometries of a drawable whose materials belong to another one. */
 export function disposeGeometries(drawable: Drawable): void {
   for (const part of drawable.parts) part.geometry.dispose();
 }
@@ -67,7 +67,7 @@ export function disposeDrawable(drawable: Drawable): void {
   }
 }
 
-/** The mean of the parts' colours, textures included: of what a thing is drawn in where its form is lost. */
+/** The mean of the parts' colours, with textures: for an entity that is drawn as points. */
 export function averageColor(drawable: Drawable): Color {
   const sum = new Color(0, 0, 0);
   for (const { material } of drawable.parts) {

@@ -17,9 +17,9 @@ import { type Quality, tintOf, type TintStrength } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
 const STILL_COLOR = new Color(0.115, 0.12, 0.13);
-/** Of grains that nobody gave a colour. */
+/** Colour of grains without a colour of their own. */
 const SAND = new Color(0.68, 0.5, 0.29);
-/** Of drops of a liquid that has no surface. */
+/** Colour of drops of a liquid that has no surface. */
 const DROPS = new Color(0.28, 0.5, 0.72);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
@@ -27,7 +27,7 @@ function shapeDrawable(entity: Entity): Drawable {
   return drawShape(entity.shape!);
 }
 
-/** Pleasant and well apart: neighbours in the list differ in hue. */
+/** Colours that are easy to tell apart: neighbours in the list differ in hue. */
 export function colorOf(entity: Entity): Color {
   if (entity.model) return WHITE;
   if (entity.color) return new Color().setRGB(...entity.color);
@@ -35,22 +35,22 @@ export function colorOf(entity: Entity): Color {
   return new Color().setHSL((entity.index * 0.381966) % 1, 0.5, 0.45);
 }
 
-/** Draws every entity of the document where the motion says it is. */
+/** Draws every entity of the document at its present pose. */
 export class EntityView {
   readonly group = new Group();
-  /** A model's picture arrived or could not be had. */
+  /** A model was loaded, or failed to load. */
   readonly loaded = new Signal<void>();
   readonly failed = new Signal<{ index: number; reason: string }>();
-  /** Surfaces of liquids cannot be made; they are drawn as drops from now on. */
+  /** Surfaces of liquids cannot be computed; liquids are drawn as drops from now on. */
   readonly surfacesLost = new Signal<string>();
-  /** An entity began or ceased to be drawn as points. */
+  /** An entity began or stopped to be drawn as points. */
   readonly pointed = new Signal<number>();
   tinted: TintStrength = "off";
-  /** While something is dragged, where the user has it, and its scale; wins over what the server said. */
+  /** Poses and scales of entities while the user drags them; they replace the server's. */
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
-  /** Something was moved, added or removed since the shadows were drawn. */
+  /** An entity was moved, added or removed since the shadows were drawn. */
   shadowsAreOld = true;
-  /** Entities that are not one body: grains, and those whose nodes carry what is drawn. */
+  /** Points of entities that are not one body: grains, and nodes that carry a drawn form. */
   readonly clouds: PointClouds;
   readonly softs: SoftBodies;
   private readonly batches = new Map<string, Batch>();
@@ -82,7 +82,7 @@ export class EntityView {
     });
   }
 
-  /** Models on their way. */
+  /** Number of models that are being loaded. */
   get loading(): number {
     return this.pending;
   }
@@ -101,31 +101,31 @@ export class EntityView {
     for (const index of changed.entities) this.put(index);
   }
 
-  /** Points of a frame; what has some is drawn as them. */
+  /** Takes the points of a frame; an entity that has points is drawn as these. */
   takePoints(frame: Frame, now: number, smooth: boolean): void {
     if (frame.sets.length > 0) this.shadowsAreOld = true;
     for (const index of this.clouds.take(frame, now, smooth)) this.dressCloud(index, now);
     for (const index of this.softs.take(frame, now, smooth)) this.put(index);
   }
 
-  /** What carries a soft thing's form is another: a rope has broken. */
+  /** The mesh that carries a soft entity's form has changed: a rope has broken. */
   redress(index: number): void {
     this.softs.undress(index);
     this.put(index);
   }
 
-  /** Everything is as the document has it: ropes are whole again. */
+  /** The world is as in the document: ropes are whole again. */
   mend(): void {
     for (const index of this.softs.broken()) this.redress(index);
   }
 
-  /** All points are those of another scene. */
+  /** All points belong to another scene: drops them. */
   forgetPoints(): void {
     this.clouds.clear();
     this.softs.clear();
   }
 
-  /** Moves points on; returns whether any are still on their way. */
+  /** Moves points towards their new positions; returns whether any are still moving. */
   advance(now: number): boolean {
     return [this.clouds.advance(now), this.softs.advance(now, this.motion.moved)].includes(true);
   }
@@ -137,7 +137,7 @@ export class EntityView {
     for (const index of this.known()) this.put(index);
   }
 
-  /** Moves and tints what changed since the last call. */
+  /** Moves and tints the entities that changed since the last call. */
   update(now: number, everything = false): void {
     const moved = everything ? this.batchOf.keys() : this.motion.moved;
     if (everything || this.motion.moved.size > 0) this.shadowsAreOld = true;
@@ -148,7 +148,7 @@ export class EntityView {
     this.motion.restated.clear();
   }
 
-  /** The entity's frame as drawn now; false when it is not drawn. */
+  /** The entity's frame as it is drawn now; false when it is not drawn. */
   matrixOf(index: number, now: number, matrix: Matrix4): boolean {
     const shown = this.batchOf.get(index);
     if (!shown) return false;
@@ -166,12 +166,12 @@ export class EntityView {
     return this.batchOf.get(index)?.batch.drawable;
   }
 
-  /** Red, green and blue of the state colour as it is drawn, and how much it covers. */
+  /** Red, green and blue of the state colour as it is drawn, and its amount. */
   tintOf(index: number): number[] {
     return this.clouds.of(index)?.tint() ?? this.batchOf.get(index)?.batch.tintOf(index) ?? [];
   }
 
-  /** The box around the entities; endless planes count as a point. Empty when none is drawn. */
+  /** The box around the entities; infinite planes count as a point. Empty when none is drawn. */
   boundsOf(indices: Iterable<number>, now: number): Box3 {
     const bounds = new Box3();
     const matrix = new Matrix4();
@@ -219,7 +219,7 @@ export class EntityView {
     ++this.pending;
     try {
       const drawable = await this.models.drawable(key);
-      // It may have been removed or changed while the model was on its way.
+      // The entity may have been removed or changed while the model was being loaded.
       if (this.document.entity(entity.index) === entity) this.join(entity, key, () => drawable);
     } catch (error) {
       if (this.document.entity(entity.index) === entity) this.join(entity, "placeholder", () => PLACEHOLDER);
@@ -237,10 +237,10 @@ export class EntityView {
     try {
       const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
       const skin = await this.softs.dress(index, plain, scale ?? 1, this.quality);
-      // It may have become another thing while the mesh was on its way.
+      // The entity may have changed while the mesh was being loaded.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
         this.join(entity, key, () => skin.drawable);
-        // Never at rest, where its nodes are not.
+        // Before the first frame is drawn with the present nodes, not with those at rest.
         this.place(index, performance.now());
         this.pointed.emit(index);
       } else if (skin) {
@@ -253,7 +253,7 @@ export class EntityView {
     this.loaded.emit();
   }
 
-  /** An entity that looks as before stays where it is drawn; false where it does not. */
+  /** Keeps an entity that looks as before in its batch; false where it looks different. */
   private keep(entity: Entity, key: string): boolean {
     const shown = this.batchOf.get(entity.index);
     if (shown?.key !== key) return false;
@@ -290,14 +290,14 @@ export class EntityView {
     if (shown.key.startsWith("soft ") || !shown.entity.model) this.discard(shown.entity, shown.batch.drawable);
   }
 
-  // Models stay in the store, the placeholder is one for all.
+  // Models stay in the store; all entities use the same placeholder.
   private discard(entity: Entity, drawable: Drawable): void {
     if (drawable === PLACEHOLDER) return;
     if (entity.model) disposeGeometries(drawable);
     else disposeDrawable(drawable);
   }
 
-  /** What is drawn of an entity began or ceased to be points, or is another kind of them. */
+  /** An entity's points appeared, disappeared, or changed their kind: updates how it is drawn. */
   private dressCloud(index: number, now: number): void {
     this.colorCloud(index);
     this.tint(index);
@@ -332,7 +332,7 @@ export class EntityView {
     const isDrawn = this.matrixOf(index, now, this.matrix);
     if (this.softs.skinOf(index) && this.motion.pose(index, now, this.position, this.rotation))
       this.softs.bend(index, now, this.position, this.rotation, this.batchOf.get(index)?.entity.scale ?? 1);
-    // What is drawn as points is not drawn as the thing that they filled.
+    // An entity that is drawn as points is not drawn as the mesh that they filled.
     if (this.clouds.of(index)) this.matrix.makeScale(0, 0, 0);
     if (isDrawn) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);
   }

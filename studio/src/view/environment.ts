@@ -22,7 +22,7 @@ const BACKGROUND: Record<Theme, number> = { dark: 0x262b33, light: 0xcdd5de };
 const GRID_COLOR: Record<Theme, number> = { dark: 0xa8b4c4, light: 0x3a4450 };
 const SHADOW_REACH_LEAST = 6;
 
-/** Light, air and ground grid: a calm studio that lets the models' own colours stand. */
+/** Light, fog and ground grid: a plain studio that does not change the models' own colours. */
 export class Environment {
   private readonly sun = new DirectionalLight(0xfff4e6, 1.9);
   private readonly sky = new HemisphereLight(0xdfe8f5, 0x6e6a64, 0.5);
@@ -58,7 +58,7 @@ export class Environment {
       generator.dispose();
     }
     this.scene.environment = high ? this.reflections : null;
-    // State colours wash out under strong image-based light.
+    // State colours look pale under strong image-based light.
     this.scene.environmentIntensity = 0.35;
     this.sky.intensity = high ? 0.5 : 2.1;
   }
@@ -67,7 +67,7 @@ export class Environment {
     this.grid.visible = shown;
   }
 
-  /** Keeps shadows sharp and air clear around what the camera looks at, `distance` metres away; says whether the sun moved. */
+  /** Moves shadows and fog to the point that the camera looks at, `distance` metres away; returns whether the sun moved. */
   follow(target: Vector3, distance: number): boolean {
     const reach = Math.max(SHADOW_REACH_LEAST, 1.4 * distance);
     const camera = this.sun.shadow.camera;
@@ -79,7 +79,7 @@ export class Environment {
       camera.far = 8 * reach;
       camera.updateProjectionMatrix();
     }
-    // Shadows last while the view's middle stays about where it was.
+    // Shadows are kept while the centre of the view stays within a tenth of their extent.
     const moved = resized || this.sun.target.position.distanceTo(target) > 0.1 * camera.right;
     if (moved) this.sun.target.position.copy(target);
     this.sun.position.set(0.45, 1, 0.6).normalize().multiplyScalar(4 * camera.right).add(this.sun.target.position);
@@ -90,7 +90,7 @@ export class Environment {
   }
 }
 
-/** Lines each metre, stronger each ten, that fade out with distance. */
+/** Lines each metre, stronger each ten metres, that fade out with distance. */
 function gridMesh(): Mesh {
   const geometry = new PlaneGeometry(400, 400);
   geometry.rotateX(-Math.PI / 2);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 import type { AttributeEntry } from "../connection/messages";
 
-/** What a liquid does to light, 1/m: red, green and blue. */
+/** Absorption and scattering of light by a liquid, 1/m: red, green and blue. */
 export interface Optics {
   absorption: [number, number, number];
   scattering: number;
 }
 
-/** Water, until the server has said more. */
+/** Optics of water, until the server has sent the liquid's own. */
 export const WATER: Optics = { absorption: [0.34, 0.0565, 0.0092], scattering: 0.03 };
 
 export function opticsOf(attributes: readonly AttributeEntry[]): Optics {
@@ -22,15 +22,15 @@ export function opticsOf(attributes: readonly AttributeEntry[]): Optics {
   };
 }
 
-/** How a layer of a liquid looks. */
+/** Appearance of a layer of a liquid. */
 export interface Look {
-  /** Share of the light from behind that comes through. */
+  /** Fraction of the light from behind that is transmitted. */
   through: [number, number, number];
-  /** Share of the light from in front that comes back. */
+  /** Fraction of the light from in front that is reflected. */
   back: [number, number, number];
 }
 
-/** Of a layer of this thickness, m, by the theory of P. Kubelka and F. Munk (1931): K = 2 a, S = 3/4 s. */
+/** Transmission and reflection of a layer of this thickness, m, by the theory of P. Kubelka and F. Munk (1931): K = 2 a, S = 3/4 s. */
 export function lookOf({ absorption, scattering }: Optics, thickness: number): Look {
   const look: Look = { through: [1, 1, 1], back: [0, 0, 0] };
   const s = Math.max(0.75 * scattering, 1e-6);

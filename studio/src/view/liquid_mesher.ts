@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: MIT
-// The surface of a liquid told by particles (docs/decisions/0014-liquid-surface.md): their density on a grid, the surface where it
-// is half of the liquid's, as a net of quads with one vertex in each cell that the surface goes through.
+// The surface of a liquid from its particles (docs/decisions/0014-liquid-surface.md): their density on a grid, and the surface
+// where it is LEVEL of the liquid's, as a mesh of quads with one vertex in each cell that the surface crosses.
 
-/** Nodes of a block along an edge, and with one more on either side. */
+/** Nodes along an edge of a block, and with one more on either side. */
 const EDGE = 8;
 const WIDE = EDGE + 2;
 const NODES = EDGE ** 3;
-/** Of the liquid's density, where the surface is drawn. */
+/** Fraction of the liquid's density at which the surface is drawn. */
 const LEVEL = 0.42;
-/** Shares of the way to their neighbours' middle that vertices go: first inwards, then back (G. Taubin, 1995). */
+/** Fractions of the displacement to their neighbours' mean that vertices move: first inwards, then back (G. Taubin, 1995). */
 const SMOOTHING = [0.5, -0.52, 0.5, -0.52, 0.5];
-/** A drop is an octahedron, its sides parted once. */
+/** A drop is an octahedron with each face divided once. */
 const DROP = dropShape();
 const MOST_DROPS = 4000;
 
-/** Triangles, counter-clockwise from outside; world, m. */
+/** Triangles, counter-clockwise seen from outside; world, m. */
 export interface LiquidMesh {
   positions: Float32Array;
   normals: Float32Array;
   indices: Uint32Array;
-  /** m³ and m². */
+  /** Enclosed volume, m³, and surface area, m². */
   volume: number;
   area: number;
 }
 
-/** Makes meshes of particles; keeps its memory from one to the next. */
+/** Makes meshes from particles; reuses its memory for the next mesh. */
 export class LiquidMesher {
   private lower = [0, 0, 0];
-  /** Blocks along each axis, and the block at each place; -1: none. */
+  /** Number of blocks along each axis, and the block at each grid place; -1: none. */
   private span = [0, 0, 0];
   private table = new Int32Array(0);
   private places: number[] = [];
-  /** Of each block, with a margin: what its own particles add. */
+  /** Density that a block's own particles add to each of its nodes, with a margin. */
   private splat = new Float32Array(0);
   private density = new Float32Array(0);
   private smooth = new Float32Array(0);
@@ -40,7 +40,7 @@ export class LiquidMesher {
   private readonly indices: number[] = [];
   private readonly padded = new Float32Array(WIDE ** 3);
 
-  /** `points`: x y z of each, m; `spacing`: edge of a cube of a particle's volume, m. */
+  /** `points`: x y z of each particle, m; `spacing`: edge of a cube of a particle's volume, m. */
   build(points: Float32Array, spacing: number): LiquidMesh {
     this.positions.length = this.indices.length = 0;
     if (points.length > 0) {
@@ -68,7 +68,7 @@ export class LiquidMesher {
       if (points[at]! < least[axis]!) least[axis] = points[at]!;
       if (points[at]! > most[axis]!) most[axis] = points[at]!;
     }
-    // Two blocks more than there are particles, so that every margin has its block.
+    // One more block on either side than contain particles, so that every margin has its block.
     this.lower = least.map((x) => (Math.floor(x / spacing / EDGE) - 1) * EDGE);
     this.span = most.map((x, axis) => Math.floor((x / spacing - this.lower[axis]!) / EDGE) + 2);
     const count = this.span[0]! * this.span[1]! * this.span[2]!;
@@ -84,12 +84,12 @@ export class LiquidMesher {
     return block;
   }
 
-  // Quadratic B-splines around each particle.
+  // Adds quadratic B-splines around each particle.
   private addParticles(points: Float32Array, spacing: number): void {
     const { lower, span } = this;
     const row = span[0]!;
     const layer = span[0]! * span[1]!;
-    // First which blocks there are: those of each particle and those near it.
+    // First find the blocks: those of each particle and their neighbours.
     const blockOf = new Int32Array(points.length / 3);
     for (let p = 0, at = 0; at < points.length; ++p, at += 3) {
       const x = Math.round(points[at]! / spacing - lower[0]!);
@@ -124,7 +124,7 @@ export class LiquidMesher {
       const x0 = 0.5 * (0.5 - dx) ** 2;
       const x1 = 0.75 - dx * dx;
       const x2 = 0.5 * (0.5 + dx) ** 2;
-      // The margin's node is number 0, so the stencil begins at the node's own number.
+      // The margin's node has number 0, so the stencil begins at the node's own number.
       let node = blockOf[p]! * WIDE ** 3 + (ix & 7) + WIDE * ((iy & 7) + WIDE * (iz & 7));
       for (let c = 0; c < 3; ++c) {
         const wz = c === 0 ? 0.5 * (0.5 - dz) ** 2 : c === 1 ? 0.75 - dz * dz : 0.5 * (0.5 + dz) ** 2;
@@ -163,10 +163,10 @@ export class LiquidMesher {
     return this.table[x + span[0]! * (y + span[1]! * z)]!;
   }
 
-  // What a block's particles add to nodes of its neighbours.
+  // Adds a block's margins to the nodes of its neighbours.
   private addMargins(): void {
     const { splat, density } = this;
-    // Of a neighbour at -1, 0, 1: first and last of the own nodes, and what to add for the neighbour's number of them.
+    // For a neighbour at -1, 0, 1: first and last of the own nodes, and the offset to the neighbour's number of the same node.
     const first = [0, 0, EDGE - 1];
     const last = [0, EDGE - 1, EDGE - 1];
     const shift = [EDGE + 1, 1, 1 - EDGE];
@@ -191,7 +191,7 @@ export class LiquidMesher {
     }
   }
 
-  /** A block's values and one row of those around it, 0 where there is no block. */
+  /** A block's values and one row of those around it; 0 where there is no block. */
   private gather(block: number, values: Float32Array): Float32Array {
     const { padded } = this;
     const first = [0, 1, EDGE + 1];
@@ -213,12 +213,12 @@ export class LiquidMesher {
     return padded;
   }
 
-  // By (1 2 1)/4 along each axis.
+  // Smooths the density by (1 2 1)/4 along each axis.
   private blur(): void {
     const plane = WIDE * WIDE;
     for (let block = 0; block < this.places.length; ++block) {
       const field = this.gather(block, this.density);
-      // Rows along each axis, with the rows of the margin where a later axis needs them.
+      // Each axis also processes the rows of the margin that a later axis needs.
       for (const [step, side, other] of [
         [1, WIDE, plane],
         [WIDE, 1, plane],
@@ -244,7 +244,7 @@ export class LiquidMesher {
     }
   }
 
-  // In each cell with nodes on both sides: the mean of where its edges cross the surface.
+  // In each cell with nodes on both sides of the surface: a vertex at the mean of the points where its edges cross it.
   private makeVertices(spacing: number): void {
     const { positions, vertexOf, span } = this;
     const corner = [0, 1, WIDE, WIDE + 1, WIDE * WIDE, WIDE * WIDE + 1, WIDE * WIDE + WIDE, WIDE * WIDE + WIDE + 1];
@@ -288,7 +288,7 @@ export class LiquidMesher {
     }
   }
 
-  // Around each edge of the grid that crosses the surface: the vertices of the four cells at it.
+  // Around each edge of the grid that crosses the surface: a quad of the vertices of the four cells around it.
   private makeQuads(): void {
     const { smooth, indices } = this;
     const step = [1, EDGE, EDGE * EDGE];
@@ -335,7 +335,7 @@ export class LiquidMesher {
     return this.vertexOf[own * NODES + (at[0]! & 7) + EDGE * ((at[1]! & 7) + EDGE * (at[2]! & 7))]!;
   }
 
-  /** Whether the surface does not come near this particle. */
+  /** Whether none of the 27 nodes around the particle is inside the surface. */
   private isDrop(points: Float32Array, at: number, spacing: number): boolean {
     const { lower } = this;
     const x = Math.round(points[at]! / spacing - lower[0]!);
@@ -372,11 +372,11 @@ export class LiquidMesher {
   }
 }
 
-/** Moves the vertices up to `end` by a share of the way to the middle of their neighbours. */
+/** Moves the vertices up to `end` by a fraction `share` of the displacement to the mean of their neighbours. */
 function smoothen(positions: Float32Array, end: number, indices: readonly number[], share: number): void {
   const sum = new Float32Array(end);
   const count = new Uint8Array(end / 3);
-  // Each edge of the net is in two triangles of either direction, the diagonals too: weights are those of a triangle mesh.
+  // Each edge of the net is in two triangles in opposite directions, the diagonals too: weights are those of a triangle mesh.
   for (let at = 0; at < indices.length; at += 3) {
     for (let k = 0; k < 3; ++k) {
       const from = indices[at + k]!;
@@ -411,7 +411,7 @@ function normalsOf(positions: Float32Array, indices: Uint32Array): Float32Array 
   return normals;
 }
 
-/** Twice its area long. */
+/** A normal whose length is twice the triangle's area. */
 function faceNormal(p: Float32Array, indices: Uint32Array, at: number): [number, number, number] {
   const a = 3 * indices[at]!;
   const b = 3 * indices[at + 1]!;

@@ -30,14 +30,14 @@ import { lookOf, type Optics, WATER } from "./liquid_look";
 import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import type { Quality } from "./tint";
 
-/** Of the state colour, beside that of other things. */
+/** Strength of the state colour, relative to that of other entities. */
 const SHARE_OF_TINT = 0.08;
-/** Of light that falls straight on water, what is thrown back: ((n − 1)/(n + 1))², n = 1.33. */
+/** Fraction of light at normal incidence that water reflects: ((n − 1)/(n + 1))², n = 1.33. */
 const REFLECTANCE = 0.02;
-/** What a colour that a person gave is the look of, m of the liquid. */
+/** Thickness of the layer that has the colour a person set, m of the liquid. */
 const DEPTH_OF_COLOR = 0.1;
 
-/** What the light from behind is multiplied by; seen aslant its way through is longer. */
+/** Factor for the light from behind; at a slant its path through the liquid is longer. */
 const FILTER_VERTEX = `
 varying vec3 vNormalOfView, vToEye;
 void main() {
@@ -56,7 +56,7 @@ void main() {
   vec3 passed = pow(through, vec3(1.0 / max(facing, 0.4))) * (1.0 - mirrored);
   gl_FragColor = vec4(passed * (1.0 - stateTint.a), 1.0);
 }`;
-/** What comes from the liquid itself: light thrown back inside, and the mirrored sky. */
+/** Light from the liquid itself: scattered light, and the mirrored sky. */
 const GLOW = `
 float facing = abs(dot(normal, normalize(vViewPosition)));
 float mirrored = ${REFLECTANCE} + ${1 - REFLECTANCE} * pow(1.0 - facing, 5.0);
@@ -69,7 +69,7 @@ interface Uniforms {
   [name: string]: Uniform;
 }
 
-/** The surface of one entity's liquid: light from behind is filtered by it, then its own is added. */
+/** The surface of one entity's liquid: it filters the light from behind, then adds its own. */
 export class LiquidSurface {
   readonly mesh = new Group();
   readonly bounds = new Box3();
@@ -96,7 +96,7 @@ export class LiquidSurface {
     quality: Quality,
     private readonly tell: (message: ToLiquidWorker) => void,
   ) {
-    // Nothing until the first mesh is there.
+    // Empty until the first mesh has been made.
     this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(3), 3));
     this.geometry.setAttribute("normal", new BufferAttribute(new Float32Array(3), 3));
     this.geometry.setIndex(new BufferAttribute(new Uint32Array(1), 1));
@@ -117,7 +117,7 @@ export class LiquidSurface {
       mesh.frustumCulled = false;
       mesh.userData["batch"] = { entityAt: () => index };
     }
-    // After all that one may see through it, and the filter before the glow.
+    // After everything that is seen through it, and the filter before the glow.
     this.filter.renderOrder = 10;
     this.glow.renderOrder = 11;
     this.filter.raycast = () => {};
@@ -127,12 +127,12 @@ export class LiquidSurface {
     this.take(set, 0, 0);
   }
 
-  /** Drops that it is the surface of. */
+  /** Number of particles under the surface. */
   get count(): number {
     return this.set.positions.length / 3;
   }
 
-  /** Triangles that are drawn. */
+  /** Number of triangles that are drawn. */
   get triangles(): number {
     return this.geometry.drawRange.count / 3;
   }
@@ -141,7 +141,7 @@ export class LiquidSurface {
     return set.liquid;
   }
 
-  /** Goes on to these places within `duration` ms. */
+  /** Moves to these positions within `duration` ms. */
   take(set: PointSet, now: number, duration: number): void {
     this.set = set;
     this.tell({ kind: "points", set });
@@ -154,7 +154,7 @@ export class LiquidSurface {
     this.ask(duration > 0 ? 0 : 1);
   }
 
-  /** Asks for the surface as it is now; the picture is drawn again once it is there. */
+  /** Asks for the surface of the present positions; the picture is drawn again once it has arrived. */
   advance(now: number): boolean {
     const part = this.duration > 0 ? Math.min(Math.max((now - this.start) / this.duration, 0), 1) : 1;
     if (part !== this.shownPart) this.ask(part);
@@ -187,7 +187,7 @@ export class LiquidSurface {
     this.applyLook();
   }
 
-  /** A colour that a person gave; null: as its attributes say. */
+  /** Sets a person's colour; null: the colour follows from the attributes. */
   setColor(color: Color | null): void {
     this.color = color;
     this.applyLook();
@@ -248,7 +248,7 @@ export class LiquidSurface {
     return material;
   }
 
-  // Buffers grow with the mesh and are kept. All at once are made anew: the outline, which shares them, binds new ones.
+  // Buffers grow with the mesh and are kept. All are replaced together: the outline, which shares them, binds the new ones.
   private makeRoom(vertices: number, indices: number): void {
     const { position } = this.geometry.attributes;
     if (position!.count >= vertices && this.geometry.index!.count >= indices) return;

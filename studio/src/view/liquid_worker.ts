@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Makes the surfaces of liquids beside the page: 60,000 particles take longer than a picture may.
+// Makes the surfaces of liquids outside of the page's thread: for 60,000 particles it takes longer than a frame may.
 import type { PointSet } from "../connection/frame";
 import { LiquidMesher } from "./liquid_mesher";
 
 /** Page → worker. */
 export type ToLiquidWorker =
   | { kind: "points"; set: PointSet }
-  /** A mesh of where the points are at this share of their way to where the last set has them. */
+  /** Asks for a mesh of the points after this fraction of their movement to the last set's positions. */
   | { kind: "mesh"; index: number; part: number }
   | { kind: "forget"; index: number };
-/** Worker → page: what was asked for. */
+/** Worker → page: the mesh that was asked for. */
 export interface FromLiquidWorker {
   index: number;
   positions: Float32Array;
@@ -29,7 +29,7 @@ interface Points {
 const known = new Map<number, Points>();
 const mesher = new LiquidMesher();
 
-/** Edge of the cube that has a ball's volume, by its radius. */
+/** Edge of the cube that has a ball's volume, per radius. */
 const CUBE = Math.cbrt((4 / 3) * Math.PI);
 
 function take(set: PointSet): void {

@@ -6,7 +6,7 @@ import type { Connection } from "../connection/connection";
 import type { ModelSummary } from "../connection/messages";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 
-/** Models of the database as the page knows them: summaries by key, pictures by id and content. */
+/** Cached models of the database: summaries by key, pictures by id and content. */
 export class ModelStore {
   private readonly loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
   private readonly summaries = new Map<string, Promise<ModelSummary>>();
@@ -14,12 +14,12 @@ export class ModelStore {
 
   constructor(private readonly connection: Connection) {}
 
-  /** Takes over what a search brought, so that it need not be asked for again. */
+  /** Keeps a summary from a search, so that it need not be asked for again. */
   learn(model: ModelSummary): void {
     this.summaries.set(model.key, Promise.resolve(model));
   }
 
-  /** These models were changed, or any (null), as where the database may be another one: they are asked for again. */
+  /** Drops the summaries of these models, or of all (null), where they may have changed: they are asked for again. */
   forgetSummaries(keys: readonly string[] | null = null): void {
     if (keys === null) this.summaries.clear();
     else for (const key of keys) this.summaries.delete(key);
@@ -52,7 +52,7 @@ export class ModelStore {
   }
 }
 
-/** The promise kept under the key; a failed one is forgotten, so that the next call tries again. */
+/** The promise that is kept under the key; a failed one is removed, so that the next call tries again. */
 function keep<Value>(kept: Map<string, Promise<Value>>, key: string, make: () => Promise<Value>): Promise<Value> {
   let promise = kept.get(key);
   if (!promise) {

@@ -22,8 +22,8 @@ const WIDTH_PIXELS = 2;
 const COPIES = 8;
 
 /**
- * A line around what is selected: the silhouette goes into the stencil buffer, then eight copies shifted by the line's width
- * are drawn outside of it. Works for any mesh and needs no second render target, which matters on software renderers.
+ * A line around the selection: the silhouette is drawn into the stencil buffer, then eight copies shifted by the line's width
+ * are drawn outside of it. It works for any mesh and needs no second render target, which matters on software renderers.
  */
 export class Outline {
   readonly group = new Group();
@@ -44,7 +44,7 @@ export class Outline {
 
   constructor(private readonly entities: EntityView) {}
 
-  /** Outlines these entities, as they are drawn now, and no others. */
+  /** Outlines exactly these entities, as they are drawn now. */
   show(indices: readonly number[]): void {
     for (const { meshes, ofCloud } of this.shown)
       for (const mesh of meshes) ofCloud ? (mesh.material as MeshBasicMaterial).dispose() : release(mesh.geometry);
@@ -73,7 +73,7 @@ export class Outline {
     }
   }
 
-  /** Follows the entities; `size` is the canvas's in pixels. */
+  /** Moves the outline with the entities; `size` is the canvas's in pixels. */
   update(now: number, size: Vector2): void {
     (this.rim.uniforms["shift"]!.value as Vector2).set((2 * WIDTH_PIXELS) / size.x, (2 * WIDTH_PIXELS) / size.y);
     this.cloudRim.value = (2 * WIDTH_PIXELS) / size.y;
@@ -116,14 +116,14 @@ function maskGeometry(original: BufferGeometry): BufferGeometry {
   return geometry;
 }
 
-/** The buffers are those of what is drawn: taken away with this, that would be drawn as it is now for ever. */
+/** Detaches the shared buffers before disposal: three.js would otherwise dispose of those of the drawn mesh, and stop updating it. */
 function release(geometry: BufferGeometry): void {
   geometry.setIndex(null);
   geometry.deleteAttribute("position");
   geometry.dispose();
 }
 
-/** The same triangles as they are now. */
+/** Takes over the present triangles of the original. */
 function follow(geometry: BufferGeometry, original: BufferGeometry): void {
   geometry.setIndex(original.index);
   geometry.setAttribute("position", original.getAttribute("position"));

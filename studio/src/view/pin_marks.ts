@@ -3,10 +3,10 @@ import { BufferAttribute, BufferGeometry, Points, PointsMaterial } from "three";
 import type { SoftBodies } from "./soft_bodies";
 
 const COLOR = 0xffc24a;
-/** On the page, in pixels. */
+/** Size on the page, in pixels. */
 const SIZE = 9;
 
-/** Dots over the nodes that hold one entity. */
+/** Dots over the pinned nodes of one entity. */
 export class PinMarks {
   readonly points = new Points(new BufferGeometry(), new PointsMaterial({ color: COLOR, size: SIZE, sizeAttenuation: false, depthTest: false, transparent: true }));
   private index = 0;
@@ -23,7 +23,7 @@ export class PinMarks {
     return this.points.visible ? this.nodes.length : 0;
   }
 
-  /** Marks these nodes of an entity, and no others. */
+  /** Marks exactly these nodes of an entity. */
   show(index: number, nodes: readonly number[]): void {
     this.index = index;
     this.nodes = nodes;
@@ -32,7 +32,7 @@ export class PinMarks {
     this.points.visible = nodes.length > 0;
   }
 
-  /** Follows the nodes. */
+  /** Moves the marks to the nodes' present positions. */
   update(): void {
     const places = this.softs.placesOf(this.index);
     this.points.visible = this.nodes.length > 0 && places !== null;

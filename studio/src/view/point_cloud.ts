@@ -20,10 +20,11 @@ import {
 import type { PointSet } from "../connection/frame";
 import { MIX, type Quality } from "./tint";
 
-/** Of the state colour, beside that of other things. */
+/** Strength of the state colour, relative to that of other entities. */
 const SHARE_OF_TINT = 0.6;
 
-// Each grain is a square that faces the eye, cut to a disc and lit as the ball that it stands for. `centre` is where it is now.
+// Each grain is a square that faces the eye, cut to a disc and lit as the ball that it stands for. `centre` is its present
+// position.
 const VERTEX_HEAD = `
 attribute vec3 from;
 attribute vec3 to;
@@ -58,7 +59,7 @@ interface Uniforms {
   [name: string]: Uniform;
 }
 
-/** A material whose squares stand where the points are. */
+/** A material whose squares are centred on the points. */
 function placed<M extends Material>(material: M, uniforms: Uniforms, head: string, fragment: [string, string][]): M {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
@@ -75,7 +76,7 @@ function placed<M extends Material>(material: M, uniforms: Uniforms, head: strin
 export class PointCloud {
   readonly mesh: Mesh<InstancedBufferGeometry, Material>;
   readonly isLiquid = false;
-  /** Drops of a liquid, drawn one by one. */
+  /** The points are drops of a liquid. */
   readonly isDrops: boolean;
   readonly bounds = new Box3();
   private readonly uniforms: Uniforms = {
@@ -108,7 +109,7 @@ export class PointCloud {
     this.older = new InstancedBufferAttribute(set.positions.slice(), 3, true);
     this.newer = new InstancedBufferAttribute(set.positions.slice(), 3, true);
     this.mesh = new Mesh(geometry, this.material(quality));
-    // The disc that throws a shadow lies at the far side of the ball, so that a grain's own one does not fall on it.
+    // The disc that casts the shadow lies at the far side of the ball, so that a grain casts no shadow on itself.
     const sunk = { ...this.uniforms, sink: new Uniform(1) };
     this.mesh.customDepthMaterial = placed(new MeshDepthMaterial(), sunk, FRAGMENT_HEAD, [["#include <alphatest_fragment>", CUT]]);
     this.mesh.castShadow = this.mesh.receiveShadow = true;
@@ -127,7 +128,7 @@ export class PointCloud {
     return set.liquid === this.isDrops && this.count === set.positions.length / 3;
   }
 
-  /** Goes on to these places within `duration` ms. */
+  /** Moves to these positions within `duration` ms. */
   take(set: PointSet, now: number, duration: number): void {
     [this.older, this.newer] = [this.newer, this.older];
     (this.newer.array as Uint16Array).set(set.positions);
@@ -148,7 +149,7 @@ export class PointCloud {
     this.uniforms["part"]!.value = duration > 0 ? 0 : 1;
   }
 
-  /** Whether they are still on their way. */
+  /** Moves the points on; returns whether they are still moving. */
   advance(now: number): boolean {
     const part = this.duration > 0 ? Math.min(Math.max((now - this.start) / this.duration, 0), 1) : 1;
     this.uniforms["part"]!.value = part;
@@ -159,7 +160,7 @@ export class PointCloud {
     (this.mesh.material as MeshStandardMaterial).color.copy(color);
   }
 
-  /** A heap of one flat hue would lose its form, so the state only shines through. */
+  /** A pile in a single flat hue would lose its form, so the state colour is mixed in only partly. */
   setTint([red, green, blue, amount]: readonly number[]): void {
     (this.uniforms["stateTint"]!.value as Vector4).set(red!, green!, blue!, SHARE_OF_TINT * amount!);
   }

@@ -7,16 +7,16 @@ import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import { PointCloud } from "./point_cloud";
 import type { Quality } from "./tint";
 
-/** Longest time in which points go on to where a frame has them, ms; as of poses. */
+/** Longest time in which points move to a frame's positions, ms; the same as for poses. */
 const LONGEST_BLEND_MS = 120;
 
-/** What is drawn of all entities that have points: balls, or the surface of a liquid. */
+/** Drawings of all entities that have points: balls, or the surface of a liquid. */
 export class PointClouds {
   readonly group = new Group();
   /** A surface is ready to be drawn. */
   readonly surfaced = new Signal<number>();
   private readonly clouds = new Map<number, PointCloud | LiquidSurface>();
-  /** Surfaces cannot be made any more, and why; the entities that are drawn as drops now. */
+  /** Surfaces cannot be computed any more: the reason, and the entities that are now drawn as drops. */
   readonly lost = new Signal<{ reason: string; indices: number[] }>();
   private worker: Worker | null = null;
   private hasFailed = false;
@@ -28,7 +28,7 @@ export class PointClouds {
     return this.clouds.get(index);
   }
 
-  /** Takes a frame's points; tells which entities began or ceased to have some. */
+  /** Takes a frame's points; returns the entities that got points or lost them. */
   take(frame: Frame, now: number, smooth: boolean): number[] {
     const changed: number[] = [];
     frame.indices.forEach((index, record) => {
@@ -37,7 +37,7 @@ export class PointClouds {
     const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
     this.lastFrame = now;
     for (const set of frame.sets) {
-      // Points without a size carry what is drawn otherwise.
+      // Points without a radius carry a drawn form and are not drawn themselves.
       if (!(set.radius > 0)) {
         if (this.drop(set.index)) changed.push(set.index);
         continue;
@@ -63,7 +63,7 @@ export class PointClouds {
     this.group.add(cloud.mesh);
   }
 
-  /** Moves what is on its way; returns whether anything still is. */
+  /** Moves points towards their new positions; returns whether any are still moving. */
   advance(now: number): boolean {
     let moving = false;
     for (const cloud of this.clouds.values()) moving = cloud.advance(now) || moving;
@@ -107,7 +107,7 @@ export class PointClouds {
     return worker;
   }
 
-  /** The worker is of no use any more: the drops themselves are drawn. */
+  /** The worker has failed: the drops themselves are drawn. */
   private fail(reason: string): void {
     if (this.hasFailed) return;
     this.hasFailed = true;

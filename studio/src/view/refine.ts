@@ -3,7 +3,7 @@ import { BufferAttribute, BufferGeometry, type InterleavedBufferAttribute, Matri
 
 const MOST_PASSES = 8;
 const MOST_VERTICES = 60_000;
-/** More than vertices there ever are: two numbers make one key. */
+/** More than there are ever vertices, so that two numbers make one key. */
 const KEY_STEP = 2 ** 26;
 
 interface Numbers {
@@ -12,8 +12,8 @@ interface Numbers {
 }
 
 /**
- * A copy of a geometry placed by `matrix`, in plain floats, with edges longer than `longest` halved until none is: so that what
- * was drawn as one flat triangle can bend. An edge is halved at the same place for all triangles that share it.
+ * A copy of a geometry transformed by `matrix`, in plain floats, with edges longer than `longest` halved until none is, so that a
+ * flat triangle can bend. An edge is halved at the same point for all triangles that have it.
  */
 export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: number): BufferGeometry {
   const placed = geometry.clone();
@@ -30,7 +30,7 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
     if (!split) break;
     triangles = split;
   }
-  // Half the way between two directions is shorter than they are.
+  // The mean of two unit vectors is shorter than 1.
   placeAll(attributes.get("normal")!, (vector) => vector.normalize());
 
   const refined = new BufferGeometry();
@@ -39,7 +39,7 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
   return refined;
 }
 
-// Quantised numbers become what they stand for.
+// Converts quantised numbers to floats.
 function read(attribute: BufferAttribute | InterleavedBufferAttribute): Numbers {
   const values: number[] = [];
   for (let i = 0; i < attribute.count; ++i)
@@ -52,7 +52,7 @@ function placeAll({ values }: Numbers, place: (vector: Vector3) => Vector3): voi
   for (let at = 0; at < values.length; at += 3) place(vector.fromArray(values, at)).toArray(values, at);
 }
 
-/** Each triangle by its edges that are too long; null where none is. */
+/** Divides each triangle according to its edges that are too long; null where none is. */
 function halve(triangles: number[], attributes: Map<string, Numbers>, longest: number): number[] | null {
   const { values } = attributes.get("position")!;
   const isLong = (a: number, b: number) => {
@@ -79,7 +79,7 @@ function halve(triangles: number[], attributes: Map<string, Numbers>, longest: n
     let [a, b, c] = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
     const long = [isLong(a, b), isLong(b, c), isLong(c, a)];
     const count = long.filter(Boolean).length;
-    // Turned so that the edge that differs from the two others comes last.
+    // Rotated so that the edge that differs from the two others comes last.
     const odd = count === 1 ? long.indexOf(true) : count === 2 ? long.indexOf(false) : 2;
     if (odd === 0) [a, b, c] = [b, c, a];
     else if (odd === 1) [a, b, c] = [c, a, b];

@@ -15,14 +15,14 @@ import type { Shape } from "../connection/scene_types";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 import { drawingOf, isOfLengths } from "./shapes_of_lengths";
 
-/** Half the side of the square that stands for an endless plane, m. */
+/** Half the side of the square that is drawn for an infinite plane, m. */
 const PLANE_REACH = 500;
-/** Faces of a hull that meet at less than this are drawn as one round surface, rad. */
+/** Faces of a hull that meet at a smaller angle are drawn as one round surface, rad. */
 const CREASE = 0.75;
 const UP = new Vector3(0, 1, 0);
 const ONE = new Vector3(1, 1, 1);
 
-/** The colour comes with each instance, so that all primitives share materials. */
+/** The colour is an attribute of each instance, so that all primitives share materials. */
 function material(): MeshStandardMaterial {
   return new MeshStandardMaterial({ color: 0xffffff, roughness: 0.75, metalness: 0 });
 }
@@ -31,7 +31,7 @@ function part(geometry: BufferGeometry, matrix = new Matrix4()): DrawablePart {
   return { geometry, material: material(), matrix };
 }
 
-/** A picture of any shape of the scene format. Throws where the shape has no surface, such as a hull of three points. */
+/** A drawable for any shape of the scene format. Throws where the shape has no surface, such as a hull of three points. */
 export function drawShape(shape: Shape): Drawable {
   const parts = shapeParts(shape);
   return drawable(parts, shape.type !== "plane");
@@ -98,7 +98,7 @@ function heightfieldGeometry(shape: Extract<Shape, { type: "heightfield" }>): Bu
 
 function meshGeometry(shape: Extract<Shape, { type: "mesh" }>): BufferGeometry {
   const geometry = indexed(new Float32Array(shape.positions.flat()), new Uint32Array(shape.triangles.flat()));
-  // Flat shading shows the triangles that the physics sees.
+  // Flat shading shows the triangles that the physics uses.
   const flat = geometry.toNonIndexed();
   flat.computeVertexNormals();
   return flat;

@@ -2,11 +2,11 @@
 import { BoxGeometry, type BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry, SphereGeometry } from "three";
 import type { Shape, ShapeLengths, ShapeOfLengths, Vector } from "../connection/scene_types";
 
-/** A length, or three along X, Y and Z, as a panel shows it: `factor` times what the scene file says. */
+/** A length, or three along X, Y and Z, as a panel shows it: `factor` times the value of the scene file. */
 interface LengthField<Name> {
   field: Name;
   label: string;
-  /** What the three are called. */
+  /** Labels of the three lengths. */
   each?: [string, string, string];
   factor: 1 | 2;
 }
@@ -15,17 +15,17 @@ interface Kind<Lengths> {
   label: string;
   /** A small drawing on a 32 × 32 grid. */
   drawing: string;
-  /** Of the size of things one holds in two hands. */
+  /** Lengths of a new entity: the size of things that are held with two hands. */
   offered: Lengths;
   fields: readonly LengthField<keyof Lengths & string>[];
-  /** What is drawn, times `size`. */
+  /** The geometry, to be scaled by `size`. */
   draw(lengths: Lengths): { geometry: BufferGeometry; size: Vector };
 }
 
 const RADIUS = { field: "radius", label: "Radius", factor: 1 } as const;
 const HEIGHT = { field: "half_height", label: "Height", factor: 2 } as const;
 
-/** Each shape that is no more than its lengths: how it is drawn, sized and offered. */
+/** All shapes that are defined by their lengths alone: how each is drawn, sized and offered. */
 export const SHAPES_OF_LENGTHS: { readonly [Type in keyof ShapeLengths]: Kind<ShapeLengths[Type]> } = {
   box: {
     label: "Box",
@@ -68,7 +68,7 @@ export function isOfLengths(shape: Shape): shape is ShapeOfLengths {
   return shape.type in SHAPES_OF_LENGTHS;
 }
 
-/** For code that treats all kinds alike. */
+/** A type for code that treats all kinds alike. */
 type Lengths = Record<string, number | Vector>;
 
 function lengthsOf(shape: ShapeOfLengths): Lengths {
@@ -83,17 +83,17 @@ export function fieldsOf(shape: ShapeOfLengths): readonly LengthField<string>[] 
   return kindOf(shape).fields;
 }
 
-/** What is drawn for it, times `size`. */
+/** The geometry of the shape, to be scaled by `size`. */
 export function drawingOf(shape: ShapeOfLengths): { geometry: BufferGeometry; size: Vector } {
   return kindOf(shape).draw(lengthsOf(shape));
 }
 
-/** A length as the panel shows it. */
+/** The length that the panel shows. */
 export function shownLength(shape: ShapeOfLengths, { field, factor }: LengthField<string>): number | Vector {
   return times(lengthsOf(shape)[field]!, factor);
 }
 
-/** The shape with a length that the panel showed. */
+/** The shape with a length that was entered in the panel. */
 export function withShownLength(shape: ShapeOfLengths, { field, factor }: LengthField<string>, shown: number | Vector): ShapeOfLengths {
   return { ...shape, [field]: times(shown, 1 / factor) };
 }

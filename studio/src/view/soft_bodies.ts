@@ -6,14 +6,14 @@ import type { Drawable } from "./drawable";
 import type { Quality } from "./tint";
 import { SoftForm, SoftSkin } from "./soft_form";
 
-/** Longest time in which nodes go on to where a frame has them, ms; as of poses. */
+/** Longest time in which nodes move to a frame's positions, ms; the same as for poses. */
 const LONGEST_BLEND_MS = 120;
 
 interface Nodes {
   from: Float32Array;
   to: Float32Array;
   now: Float32Array;
-  /** In the entity's frame. */
+  /** Positions in the entity's frame. */
   local: Float32Array;
   start: number;
   duration: number;
@@ -21,7 +21,7 @@ interface Nodes {
   isBroken: boolean;
 }
 
-/** Entities whose nodes carry their drawn form, and where these are. */
+/** Entities whose nodes carry their drawn form, and the nodes' positions. */
 export class SoftBodies {
   private readonly all = new Map<number, Nodes>();
   private readonly moving = new Set<number>();
@@ -35,7 +35,7 @@ export class SoftBodies {
     return this.all.has(index);
   }
 
-  /** Where its nodes are now, world: x, y, z of each; null where it is not soft. */
+  /** Present positions of the entity's nodes, world: x, y, z of each; null where it is not soft. */
   placesOf(index: number): Float32Array | null {
     return this.all.get(index)?.now ?? null;
   }
@@ -44,7 +44,7 @@ export class SoftBodies {
     return this.all.get(index)?.skin ?? null;
   }
 
-  /** Takes a frame's nodes; tells which entities began or ceased to be soft, or became others. */
+  /** Takes a frame's nodes; returns the entities that became soft, are no longer soft, or have another mesh. */
   take(frame: Frame, now: number, smooth: boolean): number[] {
     const changed: number[] = [];
     frame.indices.forEach((index, record) => {
@@ -76,7 +76,7 @@ export class SoftBodies {
     return changed;
   }
 
-  /** Marks as moved what is on its way; returns whether anything still is afterwards. */
+  /** Adds the entities whose nodes are moving to `moved`; returns whether any still are afterwards. */
   advance(now: number, moved: Set<number>): boolean {
     for (const index of this.moving) {
       moved.add(index);
@@ -87,8 +87,8 @@ export class SoftBodies {
   }
 
   /**
-   * A drawable that bends with the entity's nodes, made of what it looks like at rest; its geometries are for the caller to
-   * dispose of. Null where the entity is not soft (any more).
+   * A drawable that bends with the entity's nodes, made from its drawable at rest; the caller disposes of its geometries.
+   * Null where the entity is not soft (any more).
    */
   async dress(index: number, plain: Drawable, scale: number, quality: Quality): Promise<SoftSkin | null> {
     const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
@@ -100,7 +100,7 @@ export class SoftBodies {
     return nodes.skin;
   }
 
-  /** Ropes that were in pieces when they were dressed. */
+  /** Ropes that were broken when their drawables were made. */
   broken(): number[] {
     return [...this.all].filter(([, nodes]) => nodes.isBroken).map(([index]) => index);
   }
@@ -110,7 +110,7 @@ export class SoftBodies {
     if (nodes) nodes.skin = null;
   }
 
-  /** Bends the entity's skin as its nodes are now, seen from its frame there. */
+  /** Bends the entity's skin to the present nodes, in the entity's frame at this pose. */
   bend(index: number, now: number, position: Vector3, rotation: Quaternion, scale: number): void {
     const nodes = this.all.get(index);
     if (!nodes?.skin) return;

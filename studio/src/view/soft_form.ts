@@ -6,13 +6,13 @@ import { refine } from "./refine";
 import type { Quality } from "./tint";
 
 const NONE = new Matrix4();
-/** How long drawn edges may be, in edges of the elements: short ones look round between the nodes of cloth and ropes. */
+/** Longest drawn edges, in edges of the elements: short ones look round between the nodes of cloth and ropes. */
 const LONGEST: Record<Quality, { solid: number; cloth: number; rope: number }> = {
   high: { solid: 1, cloth: 0.7, rope: 0.7 },
   low: { solid: 1, cloth: 1, rope: 0.7 },
 };
 
-/** Which nodes an element has: four of a solid, three of cloth, two of a rope. */
+/** The nodes of the elements: four for each of a solid, three of cloth, two of a rope. */
 function elementsOf(mesh: SimulationMesh): { corners: number; elements: number[] } {
   if (mesh.tetrahedra) return { corners: 4, elements: mesh.tetrahedra };
   if (mesh.triangles) return { corners: 3, elements: mesh.triangles };
@@ -22,28 +22,28 @@ function elementsOf(mesh: SimulationMesh): { corners: number; elements: number[]
 }
 
 /**
- * Elements at rest, and how their nodes have turned and stretched what is around them, in the drawn thing's own frame. Each has three
- * directions that go along with it: a solid's edges; those of cloth and its unit normal; a rope's edge and two across it, which turn
- * with the rope but not about it.
+ * Elements at rest, and the deformation around them by the present nodes, in the entity's frame. Each element has three directions
+ * that deform with it: three edges of a solid; two of cloth and its unit normal; a rope's edge and two across it, which rotate with
+ * the rope but do not twist about it.
  */
 export class SoftForm {
   readonly nodes: Float32Array;
   readonly elements: Uint32Array;
-  /** Nodes of an element. */
+  /** Number of nodes of an element. */
   readonly corners: number;
   /** Mean length of the edges, m. */
   readonly edge: number;
-  /** Of each node nine numbers by rows: the deformation around it, the mean of its elements' by their amount. */
+  /** For each node nine numbers by rows: the deformation gradient, the mean of its elements' weighted by their size. */
   readonly deformation: Float32Array;
-  /** Of each element nine numbers by rows: what takes a place beside its first node to shares of its directions at rest. */
+  /** For each element nine numbers by rows: the matrix from a vector from its first node to its components along the directions at rest. */
   private readonly inverse: Float32Array;
   private readonly amount: Float32Array;
-  /** Of each node: one by the amounts of its elements. */
+  /** For each node: one divided by the total size of its elements. */
   private readonly shareOf: Float32Array;
-  /** So that nothing is made anew while things move. */
+  /** Reused memory, so that nothing is allocated while nodes move. */
   private readonly scratch = { frame: new RopeFrame(), e: new Vector3(), f: new Vector3(), g: new Vector3(), of: new Float64Array(9) };
 
-  /** `scale`: of the entity; the mesh has it in its nodes. */
+  /** `scale`: of the entity; the mesh's nodes have it applied. */
   constructor(mesh: SimulationMesh, scale: number) {
     const { corners, elements } = elementsOf(mesh);
     this.nodes = Float32Array.from(mesh.nodes, (number) => number / scale);
@@ -73,7 +73,7 @@ export class SoftForm {
     return this.elements.length / this.corners;
   }
 
-  /** Weights of the nodes at a place: some are negative outside. */
+  /** Barycentric weights of the nodes at a point: outside of the element some are negative. */
   weightsAt(t: number, x: number, y: number, z: number, weights: Float32Array): void {
     const at = 3 * this.elements[this.corners * t]!;
     const m = this.inverse;
@@ -86,7 +86,7 @@ export class SoftForm {
     }
   }
 
-  /** Finds the deformation with the nodes at these places (x, y, z each). */
+  /** Computes the deformation with the nodes at these positions (x, y, z each). */
   deform(places: Float32Array): void {
     const { deformation, elements, inverse, corners, amount, shareOf, scratch } = this;
     const { frame, e, f, g, of } = scratch;
@@ -108,7 +108,7 @@ export class SoftForm {
       for (let k = 9 * node; k < 9 * node + 9; ++k) deformation[k]! *= shareOf[node]!;
   }
 
-  /** An element's three directions with the nodes at these places; of a rope they follow from those of the element before. */
+  /** An element's three directions with the nodes at these positions; those of a rope follow from the element before. */
   private directions(t: number, places: Float32Array, frame: RopeFrame, e: Vector3, f: Vector3, g: Vector3): void {
     const { corners } = this;
     this.between(corners * t, 1, places, e);
@@ -121,7 +121,7 @@ export class SoftForm {
     else this.between(corners * t, 3, places, g);
   }
 
-  /** From the first node of the element whose nodes begin at `first` to its node `k`. */
+  /** The vector from the first node of the element whose nodes begin at `first` to its node `k`. */
   private between(first: number, k: number, places: Float32Array, way: Vector3): void {
     const from = 3 * this.elements[first]!;
     const to = 3 * this.elements[first + k]!;
@@ -131,14 +131,14 @@ export class SoftForm {
   }
 }
 
-/** Two directions across a line that goes on along edges: each turned as little as it can be from those before. */
+/** Two directions across a polyline, by parallel transport: rotated as little as possible from one edge to the next. */
 class RopeFrame {
   private readonly tangent = new Vector3();
   private readonly across = new Vector3();
   private readonly now = new Vector3();
   private readonly turn = new Quaternion();
 
-  /** The next edge is the first of a line. */
+  /** Call before the first edge of a polyline. */
   begin(): void {
     this.tangent.set(0, 0, 0);
   }
@@ -157,7 +157,7 @@ class RopeFrame {
   }
 }
 
-/** Finds the element around a place, or the nearest one. */
+/** Finds the element that contains a point, or the nearest one. */
 class ElementFinder {
   private readonly cells = new Map<number, number[]>();
   private readonly box = new Box3();
@@ -184,7 +184,7 @@ class ElementFinder {
     }
   }
 
-  /** Which, and the weights of its nodes at the place of it that is nearest; none negative. */
+  /** The element, and the weights of its nodes at its point that is nearest; none is negative. */
   find(x: number, y: number, z: number, weights: Float32Array): number {
     const middle = this.cellOf(x, y, z);
     let found = -1;
@@ -208,7 +208,7 @@ class ElementFinder {
     return found;
   }
 
-  /** Square of the distance to the place with the weights cut off at zero: 0 inside a solid. Leaves these in `own`. */
+  /** Square of the distance to the point with the weights clamped to zero: 0 inside a solid. Leaves these in `own`. */
   private squareTo(t: number, x: number, y: number, z: number): number {
     const { nodes, elements, corners } = this.form;
     this.form.weightsAt(t, x, y, z, this.own);
@@ -244,7 +244,7 @@ class ElementFinder {
   }
 }
 
-/** Of each element a number: another one on either side of where a rope is broken. */
+/** A number for each element: different on the two sides of a break of a rope. */
 function piecesOf(form: SoftForm): Uint32Array {
   const pieces = new Uint32Array(form.count);
   if (form.corners > 2) return pieces;
@@ -252,7 +252,7 @@ function piecesOf(form: SoftForm): Uint32Array {
   return pieces;
 }
 
-/** Takes out the triangles that would join different pieces. */
+/** Removes the triangles that would join different pieces. */
 function cutBetween(geometry: BufferGeometry, pieces: Uint32Array): void {
   const index = geometry.index!.array;
   const kept: number[] = [];
@@ -263,15 +263,15 @@ function cutBetween(geometry: BufferGeometry, pieces: Uint32Array): void {
   if (kept.length < index.length) geometry.setIndex(kept);
 }
 
-/** A drawn part whose vertices are carried by the elements: each by the nodes of one, and by the deformation there for what lies outside. */
+/** A drawn part whose vertices are carried by the elements: by the weights of one's nodes, and outside of it by its deformation. */
 class CarriedPart {
   private readonly nodes: Uint32Array;
   private readonly weights: Float32Array;
   private readonly offsets: Float32Array;
   /**
-   * Of cloth and ropes, of each corner: half the way from its node at rest to the place of the element that carries the vertex. A node x
-   * with deformation F has that place at x + F way; the mean of these is exact where the thing is bent as a parabola, so that what is bent
-   * evenly looks round. Empty for solids.
+   * For cloth and ropes, for each corner: half the vector w from its node at rest to the point of the element that carries the vertex.
+   * A node x with deformation gradient F predicts that point at x + F w; the mean of the predictions is exact where the entity is bent
+   * to a parabola, so that uniform bending looks round. Empty for solids.
    */
   private readonly ways: Float32Array;
   private readonly normals: Float32Array;
@@ -329,14 +329,14 @@ class CarriedPart {
     return this.position.count;
   }
 
-  /** Sum of the lengths of its normals: as many as vertices. */
+  /** Sum of the lengths of the normals: equal to the number of vertices. */
   normalLengths(): number {
     let sum = 0;
     for (let v = 0; v < this.count; ++v) sum += Math.hypot(this.normal.getX(v), this.normal.getY(v), this.normal.getZ(v));
     return sum;
   }
 
-  /** Follows nodes at these places, with the deformation that `form` has found there. */
+  /** Moves the vertices with nodes at these positions, with the deformation that `form` has computed. */
   follow(places: Float32Array, form: SoftForm): void {
     const { nodes, weights, offsets, normals, ways } = this;
     const { corners, deformation: F } = form;
@@ -377,26 +377,26 @@ class CarriedPart {
       if (y > highY) highY = y;
       if (z > highZ) highZ = z;
 
-      // Normals go with the cofactors of the deformation.
+      // Normals are transformed by the cofactors of the deformation gradient.
       const s = normals[i]!, t = normals[i + 1]!, u = normals[i + 2]!;
       const nx = (e * j - f * h) * s + (f * g - d * j) * t + (d * h - e * g) * u;
       const ny = (c * h - b * j) * s + (a * j - c * g) * t + (b * g - a * h) * u;
       const nz = (b * f - c * e) * s + (c * d - a * f) * t + (a * e - b * d) * u;
-      // Math.hypot is many times as slow, and nothing here comes near the limits of numbers.
+      // Math.hypot is several times slower; overflow is impossible here.
       const length = Math.sqrt(nx * nx + ny * ny + nz * nz);
       const by = length > 0 ? 1 / length : 0;
       up[i] = nx * by, up[i + 1] = ny * by, up[i + 2] = nz * by;
     }
     this.position.needsUpdate = true;
     this.normal.needsUpdate = true;
-    // The same boxes and spheres, since others hold them.
+    // The same boxes and spheres are updated, because other objects refer to them.
     this.geometry.boundingBox!.min.set(lowX, lowY, lowZ);
     this.geometry.boundingBox!.max.set(highX, highY, highZ);
     this.geometry.boundingBox!.getBoundingSphere(this.geometry.boundingSphere!);
   }
 }
 
-/** A drawable of its own that bends with the nodes of one entity: its geometries are its own, the materials those it was made of. */
+/** A drawable that bends with the nodes of one entity: it has its own geometries and the materials of its original. */
 export class SoftSkin {
   readonly drawable: Drawable;
   private readonly parts: CarriedPart[];
@@ -409,7 +409,7 @@ export class SoftSkin {
     const { solid, cloth, rope } = LONGEST[quality];
     const longest = form.edge * (form.corners === 4 ? solid : form.corners === 3 ? cloth : rope);
     const finder = new ElementFinder(form);
-    // Nothing is left to draw of a rope that is broken everywhere.
+    // A rope that is broken everywhere has nothing to draw.
     const shown = form.count > 0 ? plain.parts : [];
     const parts: DrawablePart[] = shown.map(({ geometry, material, matrix }) => ({
       geometry: refine(geometry, matrix, longest),
@@ -420,14 +420,14 @@ export class SoftSkin {
     this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
   }
 
-  /** As it is drawn now; for tests. */
+  /** Measures the drawn form; for tests. */
   measure(): { size: number[]; vertices: number; normals: number } {
     const vertices = this.parts.reduce((sum, part) => sum + part.count, 0);
     const normals = this.parts.reduce((sum, part) => sum + part.normalLengths(), 0) / (vertices || 1);
     return { size: this.drawable.bounds.getSize(new Vector3()).toArray(), vertices, normals };
   }
 
-  /** Bends as the nodes are (x, y, z each, in the entity's frame without its scale). */
+  /** Bends to these nodes (x, y, z each, in the entity's frame without its scale). */
   follow(places: Float32Array): void {
     this.form.deform(places);
     this.drawable.bounds.makeEmpty();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/** What drivers without a graphics card call themselves: Mesa, Chromium, Windows, macOS. */
+/** Names of drivers without a graphics card: Mesa, Chromium, Windows, macOS. */
 const SOFTWARE = /llvmpipe|softpipe|swrast|swiftshader|software|microsoft basic render/i;
 
 let known: boolean | null = null;
 
-/** Whether this computer draws with its processor, as the name of its WebGL driver says; false where it does not tell. */
+/** Whether this computer draws with its processor, by the name of its WebGL driver; false where that is unknown. */
 export function drawsInSoftware(): boolean {
   return (known ??= askDriver());
 }

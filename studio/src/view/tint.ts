@@ -2,7 +2,7 @@
 import { type Material, MeshLambertMaterial, type MeshStandardMaterial } from "three";
 import { BodyState } from "../document/motion";
 
-/** How plainly the states are shown: in their own colour with a glimmer of the state's, or in the state's altogether. */
+/** How strongly states are shown: not, as a faint tint of the own colour, or by the state's colour alone. */
 export type TintStrength = "off" | "faint" | "full";
 
 /** Red, green and gray as in the paper's Fig. 9, linear. */
@@ -12,10 +12,10 @@ const STATE_COLOR: Record<BodyState, readonly [number, number, number]> = {
   [BodyState.asleep]: [0.3, 0.31, 0.32],
   [BodyState.still]: [0, 0, 0],
 };
-/** How much the state's colour replaces the entity's own hue all over it. */
+/** Fraction of the entity's own hue that the state's colour replaces. */
 const SHARE: Record<TintStrength, number> = { off: 0, faint: 0.1, full: 0.92 };
 
-/** Colour of a state and how much it covers. */
+/** Colour of a state and its amount. */
 export function tintOf(state: BodyState, strength: TintStrength): readonly [number, number, number, number] {
   const share = state === BodyState.still ? 0 : SHARE[strength];
   return share > 0 ? [...STATE_COLOR[state], share] : [0, 0, 0, 0];
@@ -23,20 +23,20 @@ export function tintOf(state: BodyState, strength: TintStrength): readonly [numb
 
 export type Quality = "high" | "low";
 
-// The state gives the hue, the entity's own colour how light it is, so that textures can still be made out.
+// The state determines the hue, the entity's own colour the lightness, so that textures stay visible.
 export const MIX = `
 float ownLight = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * (0.45 + 0.9 * ownLight), vTint.a);
 #include <alphatest_fragment>`;
-/** A rim where the surface turns away from the eye: the state can be told, the thing keeps its colours. */
+/** A rim of the state's colour where the surface turns away from the eye: the rest keeps its own colours. */
 const RIM = `
 float turned = 1.0 - abs(dot(normal, normalize(vViewPosition)));
 outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(turned, 5.0));
 #include <opaque_fragment>`;
 
 /**
- * A copy of the material that takes its hue from the instanced attribute `tint`; low quality means matt, without reflections. Folds
- * turn away from the eye all over, so cloth has no rim.
+ * A copy of the material that takes its hue from the instanced attribute `tint`; low quality means matt, without reflections. Cloth
+ * has no rim, because its folds turn away from the eye everywhere.
  */
 export function tintable(original: Material, quality: Quality, hasRim: boolean): Material {
   const material = quality === "low" ? lambert(original as MeshStandardMaterial) : original.clone();

@@ -12,7 +12,7 @@ import { PinMarks } from "./pin_marks";
 import { Outline } from "./outline";
 import type { Quality } from "./tint";
 
-/** Where a ray from the pointer met an entity. */
+/** The point where a ray from the pointer met an entity. */
 export interface Hit {
   index: number;
   point: Vector3;
@@ -22,14 +22,14 @@ export interface Hit {
 
 const GROUND = new Plane(new Vector3(0, 1, 0), 0);
 const LONGEST_STEP_S = 0.1;
-/** Where edges are not smoothed: after so long without a new picture, ms, the last one is drawn again, so many times as fine. */
+/** Without antialiasing: after so long without a new picture, ms, the last one is drawn again at so many times the resolution. */
 const STILL_MS = 400;
 const STILL_FINENESS = 2;
-/** So many pictures on end, each as late as this after the one before, are slow drawing. */
+/** So many pictures in succession, each later than this after the one before, ms, count as slow drawing. */
 const SLOW_PICTURES = 12;
 const SLOW_MS = 120;
 
-/** The picture in the middle. It is drawn only when something changed. */
+/** The 3D view. A picture is drawn only when something changed. */
 export class View {
   readonly scene = new Scene();
   readonly rig = new CameraRig();
@@ -39,25 +39,25 @@ export class View {
   readonly collision: CollisionOverlay;
   readonly debug = new DebugOverlay();
   readonly pins: PinMarks;
-  /** Just before a picture is drawn, with the page's clock in milliseconds. */
+  /** Sent just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
-  /** Motion is not fluent here, for the last SLOW_PICTURES pictures; said once. */
+  /** Drawing was slow for the last SLOW_PICTURES pictures; sent once. */
   readonly slow = new Signal<void>();
   /** Pictures drawn so far. */
   frames = 0;
-  /** Least time from a picture to the next of what moves by itself, ms; what the user does is drawn at once. */
+  /** Shortest time between pictures of a moving scene, ms; what the user does is drawn at once. */
   pace = 0;
   private waiting = 0;
   private still = 0;
-  /** What is seen was drawn finer than what moves is. */
+  /** The present picture was drawn at the higher resolution. */
   private isFine = false;
   private readonly hasSmoothEdges: boolean;
   private asked = false;
   private halted = false;
   private lastFrame = 0;
-  /** The picture before asked for the next: the time between them is work, not rest. */
+  /** The last picture asked for the next one: the time between them is work, not idle time. */
   private goesOn = false;
-  /** Slow pictures on end; -1 once that has been said. */
+  /** Number of slow pictures in succession; -1 once `slow` was sent. */
   private slowPictures = 0;
   private pixelRatio = 1;
   private readonly size = new Vector2();
@@ -70,7 +70,7 @@ export class View {
     readonly entities: EntityView,
     quality: Quality,
   ) {
-    // Smooth edges are the larger half of what a picture costs without a graphics card; a context has them for ever or never.
+    // Antialiasing is the larger half of a picture's cost without a graphics card; a context cannot change it later.
     this.renderer = new WebGLRenderer({ canvas, antialias: quality === "high", stencil: true, powerPreference: "high-performance" });
     this.hasSmoothEdges = this.renderer.getContext().getContextAttributes()?.antialias ?? false;
     this.renderer.toneMapping = NeutralToneMapping;
@@ -94,7 +94,7 @@ export class View {
     requestAnimationFrame((now) => this.draw(now));
   }
 
-  /** Asks for a picture as soon as the pace allows. */
+  /** Asks for a picture as soon as `pace` allows. */
   drawSoon(): void {
     clearTimeout(this.still);
     const wait = this.lastFrame + this.pace - performance.now();
@@ -106,9 +106,9 @@ export class View {
       }, wait);
   }
 
-  /** Draws nothing any more until resume(): screenshots of a page that draws all the time may never end. */
+  /** Stops drawing until resume(): screenshots of a page that always draws may never end. */
   halt(): void {
-    // What was asked for is drawn first: a canvas of a new size would stay empty.
+    // Draws a picture that was asked for: otherwise a canvas of a new size would stay empty.
     if (this.asked) this.draw(performance.now());
     if (!this.isFine) this.drawStill();
     this.halted = true;
@@ -132,7 +132,7 @@ export class View {
     this.invalidate();
   }
 
-  /** Hands the present picture to the browser as a PNG file. */
+  /** Saves the present picture as a PNG file in the browser's downloads. */
   savePicture(title: string): void {
     this.renderer.render(this.scene, this.rig.camera);
     this.canvas.toBlob((blob) => {
@@ -156,7 +156,7 @@ export class View {
     this.resize();
   }
 
-  /** The nearest entity under a point of the page, or null; `ignore` is seen through. */
+  /** The nearest entity under a point of the page, or null; entities of `ignore` are skipped. */
   pick(clientX: number, clientY: number, ignore?: ReadonlySet<number>): Hit | null {
     this.aim(clientX, clientY);
     const hits: Intersection[] = this.raycaster.intersectObject(this.entities.group, true);
@@ -175,13 +175,13 @@ export class View {
     return { origin: this.raycaster.ray.origin.clone(), direction: this.raycaster.ray.direction.clone() };
   }
 
-  /** Where the pointer's ray meets a plane (the ground unless told), or null. */
+  /** The point where the pointer's ray meets a plane (by default the ground), or null. */
   meet(clientX: number, clientY: number, plane: Plane = GROUND): Vector3 | null {
     this.aim(clientX, clientY);
     return this.raycaster.ray.intersectPlane(plane, new Vector3());
   }
 
-  /** A world point's place on the page in pixels. */
+  /** The position of a world point on the page in pixels. */
   project(point: Vector3): Vector2 {
     this.rig.camera.updateMatrixWorld();
     const seen = point.clone().project(this.rig.camera);
@@ -214,7 +214,7 @@ export class View {
     else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
   }
 
-  /** The last picture again, with edges smoothed by many points a pixel. */
+  /** Draws the last picture again, antialiased by several samples for each pixel. */
   private drawStill(): void {
     if (this.halted || this.hasSmoothEdges || this.renderer.xr.isPresenting) return;
     this.setFine(true);
@@ -228,7 +228,7 @@ export class View {
 
   private watchPace(interval: number): void {
     if (this.slowPictures < 0) return;
-    // A longer pause is rest, not work, unless the picture before already asked for this one.
+    // A longer pause is idle time, not work, unless the last picture asked for this one.
     const late = interval - this.pace > SLOW_MS && (this.goesOn || interval < 8 * SLOW_MS);
     this.slowPictures = late ? this.slowPictures + 1 : 0;
     if (this.slowPictures < SLOW_PICTURES) return;
