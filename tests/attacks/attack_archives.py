@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Generated hostile archives, as attack_models makes models."""
+"""Generated hostile archives, in the same form as the models of attack_models."""
 import random
 
 import sample_files as samples
@@ -10,21 +10,21 @@ GOOD = Member(b"good.obj", samples.obj())
 
 
 def names(chance: random.Random):
-    """Paths that lead out, old code pages, NUL, very long ones, the same twice."""
+    """Paths that lead out of the folder, old code pages, NUL, very long paths, duplicates."""
     name = chance.choice([b"../x.obj", b"/etc/x.obj", b"C:\\x.obj", b"a/../../../x.obj", b"..\\..\\x.obj", b"caf\x82.obj", b"\xff\xfe.obj", b"a\0b.obj", b"x" * 5000 + b".obj",
                           b"good.obj", b"GOOD.OBJ", b"\x1b[2J.obj", b"a/" * 3000 + b"x.obj", b".", b"..", b"", b"good.obj/x.obj", "\u202e".encode() + b".obj", b"./good.obj"])
     return build([GOOD, Member(name, samples.obj(), flags=chance.choice([0, 0x800]))])
 
 
 def bombs(chance: random.Random):
-    """Much from little; the short ones say that they are small."""
+    """Decompression bombs: small archives that unpack to much data; the short ones declare a small size."""
     size = chance.choice([600, 64, 8]) << 20
     lies = {} if chance.random() < 0.5 else {"size": 100}
     return build([GOOD, Member(b"bomb.obj", bytes(size), **lies)])
 
 
 def overlapping(chance: random.Random):
-    """Members that share their bytes, and one that lies in the list itself."""
+    """Members with overlapping bytes, and one that overlaps the central directory."""
     many = chance.choice([2, 20, 200])
     return build([GOOD] + [Member(f"o{i}.obj".encode(), samples.obj(), offset=chance.choice([0, 7, -1 & 0xFFFFFFFF, 10 ** 6])) for i in range(many)])
 
@@ -37,7 +37,7 @@ def lies(chance: random.Random):
 
 
 def ends(chance: random.Random):
-    """What stands at the end, of the whole."""
+    """Changes of the end record of the whole archive."""
     chosen = {field: chance.choice(LENGTHS) for field in chance.sample(["count", "list_offset", "list_size"], chance.randrange(1, 3))}
     return build([GOOD], disk=chance.choice([0, 0, 1, 0xFFFF]), comment=b"x" * chance.choice([0, 1, 65_535]), **chosen)
 
@@ -64,7 +64,7 @@ def nested(chance: random.Random):
 
 
 def catalogues(chance: random.Random):
-    """Lists of pieces that lie."""
+    """Central directories with wrong entries."""
     number = chance.choice(["nan", "inf", "-1", "0", "1e308", "", "5e-324", "1,5", "abc", "50"])
     path = chance.choice(["/good.obj", f"{OUTSIDE}/secret.obj", "../good.obj", "/etc/passwd", "", "good.obj", "nothing.obj", "a" * 10_000, "\\u0000good.obj"])
     text = (f"id=c\nname={chance.choice(['x', chr(92) + 'u001b[2J', 'x' * 100_000, chr(92) + 'ud800'])}\nid#1=c#1\nname#1=Chair\ncategory#1=Kitchen\nmodel#1={path}\nicon#1={path}\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Databases damaged in every way: bytes, pages, ends, the schema, what stands in the columns."""
+"""Databases that are damaged in many ways: bytes, pages, ends, the schema, values in the columns."""
 import pathlib
 import random
 import shutil
@@ -31,26 +31,26 @@ def run_sql(database: pathlib.Path, statement: str):
         connection.execute(statement)
         connection.commit()
     except sqlite3.Error:
-        connection.rollback()  # one that this schema does not allow damages nothing
+        connection.rollback()  # a statement that this schema refuses changes nothing
     finally:
         connection.close()
 
 
 def damage(chance: random.Random, database: pathlib.Path, number: int):
-    """Damages a copy; `number` walks through the statements, the rest is by chance."""
+    """Damages a copy; each `number` below the count of statements runs one of them, higher ones damage at random."""
     if number < len(STATEMENTS):
         return run_sql(database, STATEMENTS[number])
     data = bytearray(database.read_bytes())
     way = chance.randrange(8)
     if way == 0:
         del data[chance.randrange(len(data)):]
-    elif way == 1:  # a page of zeros, or of something else
+    elif way == 1:  # a page of zeros or of random bytes
         at = PAGE * chance.randrange(len(data) // PAGE)
         data[at:at + PAGE] = chance.choice([bytes(PAGE), chance.randbytes(PAGE)])
-    elif way == 2:  # pages exchanged
+    elif way == 2:  # two pages exchanged
         a, b = (PAGE * chance.randrange(len(data) // PAGE) for _ in range(2))
         data[a:a + PAGE], data[b:b + PAGE] = data[b:b + PAGE], data[a:a + PAGE]
-    elif way == 3:  # the head
+    elif way == 3:  # the file header
         at = chance.randrange(100)
         data[at] ^= 1 << chance.randrange(8)
     elif way == 4:  # many bits
@@ -62,7 +62,7 @@ def damage(chance: random.Random, database: pathlib.Path, number: int):
             data[at + 13:at + 17] = b"xxxx"
     elif way == 6:
         data += bytes(chance.choice([1, PAGE, 10 * PAGE]))
-    else:  # a log of something else beside it
+    else:  # an unrelated write-ahead log beside the file
         database.with_name(database.name + chance.choice(["-wal", "-journal"])).write_bytes(chance.randbytes(chance.choice([0, 32, 5000])))
     database.write_bytes(data)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Generated hostile models. Each class is a function of a random generator that gives one file: its extension and its bytes. What lies outside
-the imported folder is named by OUTSIDE; its texts hold SECRET, which must never come into a database."""
+"""Generated hostile models. Each class is a function of a random generator that returns one file: its extension and its bytes.
+OUTSIDE names a folder outside of the imported one; its texts contain SECRET, which must never come into a database."""
 import json
 import pathlib
 import random
@@ -18,7 +18,7 @@ NUMERALS = ["nan", "inf", "-inf", "1e308", "-1e308", "1e999", "1e-320", "0x10", 
 
 
 def damaged(chance: random.Random, content: bytes) -> bytes:
-    """Bytes, blocks and the end changed at random."""
+    """Random changes of bytes, blocks and the end."""
     data = bytearray(content)
     for _ in range(chance.choice([1, 1, 2, 4, 16])):
         at = chance.randrange(len(data)) if data else 0
@@ -60,7 +60,7 @@ def outside_path(chance: random.Random, name: str) -> str:
 
 
 def gltf_fields(chance: random.Random):
-    """A field of any kind exchanged; as text, as Python writes no such numbers."""
+    """Exchanges a field of any kind; in the text, because Python does not write such numbers."""
     document = samples.gltf_document(samples.data_uri(samples.gltf_buffer()), samples.png())
     for _ in range(chance.randrange(1, 4)):
         inside, key = any_place(chance, document)
@@ -81,7 +81,7 @@ def gltf_outside(chance: random.Random):
 
 
 def gltf_nodes(chance: random.Random):
-    """Cycles, depth, numbers of nodes."""
+    """Cycles, deep nesting, large numbers of nodes."""
     document = samples.gltf_document(samples.data_uri(samples.gltf_buffer()))
     count = chance.choice([1, 2, 50, 3000, 20000])
     way = chance.randrange(4)
@@ -117,7 +117,7 @@ def glb_lengths(chance: random.Random):
 
 
 def glb_numbers(chance: random.Random):
-    """Points that are none, indices that reach nowhere."""
+    """Points that are no numbers, indices out of range."""
     binary = bytearray(samples.gltf_buffer())
     for _ in range(chance.randrange(1, 6)):
         if chance.random() < 0.6:
@@ -176,7 +176,7 @@ def ply_headers(chance: random.Random):
 
 
 def ply_lists(chance: random.Random):
-    """Faces of other lengths and corners than there are."""
+    """Faces with wrong lengths and with corners out of range."""
     faces = "".join(f"{chance.choice([-1, 0, 1, 2, 3, 4, 200, 255])} " + " ".join(str(chance.choice([0, 1, 2, 3, 4, -1, 2 ** 31])) for _ in range(chance.randrange(6))) +
                     "\n" for _ in range(4))
     points = "".join(f"{x} {y} {chance.choice([str(z)] * 6 + NUMERALS)} 9 8 7\n" for x, y, z in samples.POINTS)
@@ -246,7 +246,7 @@ def dae_numbers(chance: random.Random):
     for _ in range(chance.randrange(1, 4)):
         old = chance.choice(['count="12"', 'count="4"', 'stride="3"', 'offset="0"', "0 2 1", "0 0 0", 'meter="1"', "Y_UP", 'source="#a"', 'url="#g"'])
         quote = '"' if '"' in old else ""
-        # assimp makes room for whatever is promised, and takes the time: seldom.
+        # Rarely large: assimp reserves memory for any declared length, which takes time.
         most = LENGTHS if chance.random() < 0.03 else [0, 1, 3, 4, 0x7F, 0xFFFF, 100_000]
         text = text.replace(old, old.split('"')[0] + quote + str(chance.choice(most + NUMERALS[:-4] + ["-1", "#v", "#s"])) + quote, 1)
     return ".dae", text.encode()
@@ -261,19 +261,19 @@ def vrml_texts(chance: random.Random):
 
 
 def any_image(chance: random.Random) -> bytes:
-    """PNG and JPEG that lie, whole ones among them."""
+    """PNG and JPEG with wrong declarations, and valid ones among them."""
     way = chance.randrange(10)
     side = chance.choice([0, 1, 7, 65_535, 32_768, 8001, 0x7FFFFFFF])
     if way == 0:
         return samples.png(width=side, height=side, pixels=bytes(10))
     if way == 1:
         return samples.jpeg(side & 0xFFFF, side & 0xFFFF, chance.choice([0xC0, 0xC1, 0xC2, 0xC3, 0xC9, 0xCF]))
-    if way == 2:  # a bomb that is as large as it says
+    if way == 2:  # a bomb that declares its true, huge size
         return samples.png(width=20_000, height=chance.choice([20_000, 3000]), color=0, bits=1, pixels=bytes(4 << 20))
     if way == 3:
         return samples.png(color=chance.choice([0, 2, 3, 4, 6]), bits=chance.choice([1, 2, 4, 8, 16, 0, 3, 32]))
     if way == 4:
-        return samples.png(color=3, bits=8, pixels=b"\0" + b"\xff" * 5 + b"\0" + b"\xfe" * 5 + b"\7" + b"\xfd" * 5)  # no such colour, no such filter
+        return samples.png(color=3, bits=8, pixels=b"\0" + b"\xff" * 5 + b"\0" + b"\xfe" * 5 + b"\7" + b"\xfd" * 5)  # invalid colour and filter
     if way == 5:
         chunk = samples.png_chunk(chance.choice([b"tRNS", b"gAMA", b"iCCP", b"PLTE", b"IHDR", b"zTXt", b"IEND"]), bytes(chance.randrange(400)),
                                   chance.choice([None, None, 0xFFFFFFFF, 0x7FFFFFFF]))
@@ -292,7 +292,7 @@ def textured(chance: random.Random):
 
 
 def named_texts(chance: random.Random):
-    """Names inside of files: terminal escapes, directions of writing, NUL, very long, no UTF-8."""
+    """Names inside of files: terminal escapes, characters that change the direction of writing, NUL, very long, not UTF-8."""
     name = chance.choice([b"\x1b]0;x\x07", b"\x1b[2J", "\u202e\u2066".encode(), b"a\0b", b"\xff\xfe\xc0\x80", b"x" * 70_000, b"\xed\xa0\x80", b"\n\r", b"'; DROP TABLE model;--",
                           b"<script>", b"%n%s%x", b"../../x"])
     if chance.random() < 0.5:
@@ -308,7 +308,7 @@ def any_damaged(chance: random.Random):
 
 
 def foreign(chance: random.Random):
-    """One format under another's name, noise, nothing."""
+    """Files with another format's extension, random bytes, empty files."""
     content = chance.choice([b"", b"\0" * 100, bytes(chance.randrange(256) for _ in range(chance.randrange(3000))), b"<html>", b"\x7fELF" + bytes(60), samples.png(),
                              samples.glb(), samples.stl_text(), samples.ac3d(), samples.dae()])
     return chance.choice([".obj", ".stl", ".ply", ".dae", ".gltf", ".glb", ".ac", ".wrl"]), content

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Generated hostile scene files, as text: fields twice, depth, numbers that none can hold, lone surrogates, bytes 0, lists without end."""
+"""Generated hostile scene files, as text: duplicate fields, deep nesting, numbers out of range, lone surrogates, bytes 0, endless lists."""
 import json
 import pathlib
 import random
@@ -27,7 +27,7 @@ def numbers(chance: random.Random) -> bytes:
 
 
 def fields(chance: random.Random) -> bytes:
-    """Exchanged, removed, misspelled, or of another kind."""
+    """Fields exchanged, removed, misspelled, or of another type."""
     document = whole(chance)
     for _ in range(chance.randrange(1, 3)):
         inside, key = any_place(chance, document)
@@ -58,7 +58,7 @@ def deep(chance: random.Random) -> bytes:
 
 
 def many(chance: random.Random) -> bytes:
-    """Lists without end, and things in numbers that refer to each other or to nothing."""
+    """Huge lists, and many entities that refer to each other or to nothing."""
     way = chance.randrange(4)
     if way == 0:
         return ('{"embody_scene": 1, "entities": [' + "{}," * 200_000 + "{}]}").encode()
@@ -72,20 +72,20 @@ def many(chance: random.Random) -> bytes:
 
 
 def texts(chance: random.Random) -> bytes:
-    """What is not text, in the place of a text."""
+    """Invalid text in the place of a text."""
     bad = chance.choice([b'"\\ud800"', b'"\\udfff\\ud800"', b'"\xff"', b'"\xc0\x80"', b'"\xed\xa0\x80"', b'"a\0b"', b'"\\u0000"', b'"\x1b[2J"', b'"\\u202e"', b'"' + b"x" * 5_000_000 + b'"'])
     return b'{"embody_scene": 1, "title": ' + bad + b', "entities": [{"index": 1, "name": ' + bad + b', "shape": {"type": "box", "half_extents": [1, 1, 1]}}]}'
 
 
 def tails(chance: random.Random) -> bytes:
-    """Something behind the end, or before the beginning."""
+    """Text after the end or before the beginning."""
     text = chance.choice(WHOLE).encode()
     bad = chance.choice([b"\0", b"\0]", b"\0\"", b"}", b"]]]]", b"\xef\xbb\xbf", b"\xff\xfe", b"//", b"{}", b"\0" * 100_000, b'\\"'])
     return bad + text if chance.random() < 0.3 else text + bad
 
 
 def references(chance: random.Random) -> bytes:
-    """Models that are none."""
+    """Names of models that do not exist."""
     name = chance.choice(["../../etc/passwd", "file:../outside/secret.obj", "primitive:", "primitive:box", "file:0000", "", "\x1b[2J", "a" * 100_000, "'; DROP TABLE model; --"])
     return json.dumps({"embody_scene": 1, "entities": [{"index": 1, "model": name}]}).encode()
 

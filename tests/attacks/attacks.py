@@ -3,9 +3,9 @@
 """Hostile files by the thousand, generated: models, archives, names, links, scenes, databases, and workers that were taken over.
 
 Usage: attacks.py EMBODY [--size N] [--seed S] [--keep FOLDER] [part of a test's name …]
-`--size 1` is the short form, of about 420 files; each class has so many times more. What is asked of all: no crash of the program, the documented exit
-code, each refusal with file and reason, nothing written outside of the database, nothing read outside of the folder, an end within the
-limits, memory within the budget, and a database that passes integrity_check.
+`--size 1` is the short form, of about 420 files; `--size N` has N times as many of each class. Required of all: no crash of the program,
+the documented exit code, each refusal with file and reason, nothing written outside of the database, nothing read outside of the folder,
+an end within the time limits, memory within the budget, and a database that passes integrity_check.
 """
 import argparse
 import json
@@ -27,17 +27,17 @@ import sample_files as samples
 import worker_frames
 from attack_models import SECRET
 
-# One import or command of these sizes; what does not end by then hangs, s.
+# An import or command of these sizes that has not ended by then hangs, s.
 LONGEST = 1500
-# Resident memory of the program itself; workers have their own bounds (docs/import.md). B.
+# Resident memory of the program itself, bytes; workers have limits of their own (docs/import.md).
 MOST_MEMORY = 900 << 20
-# A worker that reads alone what did not get by with a share: half of the machine's.
+# Memory of a worker that runs alone, because a fraction of it was not enough: half of the machine's, bytes.
 MOST_WORKER_MEMORY = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
 STEERING = [chr(c) for c in (*range(0x20), *range(0x7F, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)) if c != 0x0A]
 
 
 def run(words: list, wrong: list, codes=(0, 1, 3)) -> subprocess.CompletedProcess:
-    """Runs the program and checks what holds for all of it: the exit code, plain letters, memory, an end."""
+    """Runs the program and checks what holds for every command: exit code, no control characters, memory, an end in time."""
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     outputs = {}
     readers = [threading.Thread(target=lambda name=name, stream=stream: outputs.update({name: stream.read()}))
@@ -105,7 +105,7 @@ def check_database(embody: str, database: pathlib.Path, wrong: list):
 
 
 class Yard:
-    """A folder of hostile files, one of things that are none of its business, and a database."""
+    """A folder of hostile files, a folder that must not be read, and a database."""
 
     def __init__(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -137,7 +137,7 @@ class Yard:
         return file
 
     def put_good(self):
-        """Between the others: these have to come in, whatever lies beside them."""
+        """Good files between the hostile ones, which have to be imported."""
         self.good += 1
         self.put(f"good-{self.good:05}.obj", samples.obj(height=1 + 0.001 * self.good))
 
@@ -225,7 +225,7 @@ def test_archives(embody: str, size: int, chance: random.Random, wrong: list):
 
 
 def check_scenes(embody: str, files: list, database: pathlib.Path, wrong: list) -> list:
-    """The rows of `embody check`; a batch that ends badly is gone through file by file."""
+    """The rows of `embody check`; after a crash each file of the batch is checked alone."""
     done = run([embody, "check", "--json", "--database", str(database), *map(str, files)], [] if len(files) > 1 else wrong, codes=(0, 1))
     if done.returncode in (0, 1):
         return json.loads(done.stdout)["scenes"]
@@ -245,7 +245,7 @@ def test_scenes(embody: str, size: int, chance: random.Random, wrong: list):
         for row in rows:
             if "error" in row and not (row["error"].startswith(row["file"]) and len(row["error"]) > len(row["file"]) + 5):
                 wrong.append(f"a refusal without file or reason: {row['error'][:300]!r}")
-        # What is no scene is told on standard error by the other command.
+        # The other command reports a file that is no scene on standard error.
         refused = [row["file"] for row in rows if "error" in row]
         for file in chance.sample(refused, min(len(refused), 6 * size)):
             run([embody, "simulate", "--database", str(yard.database), "--seconds", "0.01", file], wrong, codes=(1,))
@@ -267,7 +267,7 @@ def test_databases(embody: str, size: int, chance: random.Random, wrong: list):
             database = attack_databases.copy_of(good, yard.path / f"damaged{i}")
             attack_databases.damage(chance, database, i)
             before = database.read_bytes()
-            # Which of them a model has is known to the whole one; a reader first, as a writer may mend.
+            # Start with a command that only reads, because one that writes may repair the database.
             scene.write_text(json.dumps({"embody_scene": 1, "entities": [{"model": f"primitive:box"}]}))
             commands = [["search", "good"], ["show", "good 00001"], ["check", str(scene)], ["set", "--all", "mass=2"], ["history"], ["import", str(yard.models)]]
             chosen = [commands[0], *chance.sample(commands[1:], 2)]
@@ -319,7 +319,7 @@ elif kind == 11: os.kill(os.getpid(), chance.choice([4, 6, 9, 11]))
 
 
 def test_workers(embody: str, size: int, chance: random.Random, wrong: list):
-    """The program beside a worker that answers as somebody who has taken it over."""
+    """Runs the program with a worker that answers as a hijacked one could."""
     built = pathlib.Path(embody).resolve()
     with Yard() as yard:
         good = yard.put("good.obj", samples.obj())

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Programs killed (SIGKILL) at random times while they write: import, `set`, the saving of a scene, the server's autosave. What was acknowledged
-is there afterwards, every file is whole, and the same command goes on.
+"""Programs killed (SIGKILL) at random times while they write: import, `set`, the saving of a scene, the server's autosave. Acknowledged
+changes are there afterwards, every file is complete, and the same command can continue.
 
 Usage: kills.py EMBODY [--kills N] [--seed S]   (the short form is 24)
 """
@@ -28,7 +28,7 @@ BOXES = [{"index": i + 1, "shape": {"type": "box", "half_extents": [0.1, 0.1, 0.
 
 
 def rows(database: pathlib.Path, question: str) -> list:
-    """Of a database that must be whole."""
+    """Checks the integrity of a database."""
     connection = sqlite3.connect(database)
     try:
         assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",), "integrity_check"
@@ -47,11 +47,11 @@ class Trial:
         self.models = folder / "models"
         self.models.mkdir()
         self.generation = 0
-        # How long a command takes undisturbed: kills fall within.
+        # How long a command takes without a kill; kills fall within this time.
         self.takes: dict = {}
 
     def kill_within(self, name: str, words: list) -> tuple:
-        """Starts and kills it at a random moment of its life; its exit code (negative: killed) and what it said."""
+        """Starts the command and kills it at a random time; returns its exit code (negative: killed) and its output."""
         began = time.monotonic()
         process = subprocess.Popen([self.embody, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
@@ -60,7 +60,7 @@ class Trial:
             process.kill()
             out, error = process.communicate()
         else:
-            # Nobody disturbed it: this long it takes.
+            # The command ended by itself after this time.
             self.takes[name] = max(time.monotonic() - began, 0.02)
         assert process.returncode in (0, -signal.SIGKILL), f"{name} ended with {process.returncode}: {error.decode()[-300:]}"
         return process.returncode, out.decode()
@@ -71,13 +71,13 @@ class Trial:
             (self.models / f"m{i}.obj").write_bytes(samples.obj(height=1 + 0.0001 * (i + MODELS * self.generation)))
 
     def import_models(self):
-        """A killed import loses no model that was there, and the next goes on."""
+        """A killed import loses no model that was there, and the next import continues."""
         question = "SELECT key FROM model JOIN model_geometry AS g ON g.model = id JOIN model_thumbnail AS t ON t.model = id JOIN model_knowledge AS k ON k.model = id"
         before = set(rows(self.database, question)) if self.database.exists() else set()
         if self.generation == 0 or len([key for key in before if key[0].startswith("file:")]) >= MODELS * self.generation and self.generation < 3:
             self.new_files()
         elif self.generation == 3 and self.chance.random() < 0.2:
-            # Begin anew, or nothing is left to import.
+            # Start with an empty database, because otherwise nothing is left to import.
             for file in self.folder.glob("models.sqlite*"):
                 file.unlink()
             before, self.generation = set(), 0
@@ -91,7 +91,7 @@ class Trial:
         return code
 
     def set_values(self):
-        """An act is carried out for all models or for none, and one that was acknowledged stays."""
+        """A change applies to all models or to none, and an acknowledged one stays."""
         mass = round(self.chance.uniform(1, 100), 3)
         if not rows(self.database, "SELECT 1 FROM model") if self.database.exists() else True:
             return self.import_models()
@@ -113,11 +113,11 @@ class Trial:
         return scene
 
     def save_scene(self):
-        """Each saved scene is whole and at least as new as what was acknowledged."""
+        """Each saved scene is complete and at least as new as the last acknowledged one."""
         return self.served(lambda viewer, number: viewer.do("scene.save", name="kept"), "scenes/kept.json", True)
 
     def autosave(self):
-        """Each autosave is whole, and one is there once it was made."""
+        """Each autosave is complete, and one exists after the first was made."""
         return self.served(lambda viewer, number: None, "scenes/autosave/*.json", False)
 
     def served(self, after_edit, pattern: str, is_acknowledged: bool):
@@ -134,7 +134,7 @@ class Trial:
                 viewer.do("entity.transform", poses=[{"index": 1, "position": [0, number, 0]}])
                 after_edit(viewer, number)
                 acknowledged = number
-            # In the middle of the next one, whose answer nobody waits for.
+            # Kill in the middle of the next change, whose answer nobody reads.
             viewer.ask("entity.transform", poses=[{"index": 1, "position": [0, number + 1, 0]}])
             if is_acknowledged:
                 viewer.ask("scene.save", name="kept")
@@ -172,7 +172,7 @@ def main() -> int:
         acts = [trial.import_models, trial.set_values, trial.save_scene, trial.autosave]
         counts: dict = {}
         runs = 0
-        # Each in its turn until as many were killed as are wanted; some end before their kill.
+        # The commands in turn until there were as many kills as wanted; some commands end before their kill.
         while sum(killed for killed, _ in counts.values()) < options.kills and runs < 20 * options.kills:
             act = acts[runs % len(acts)]
             runs += 1
@@ -185,7 +185,7 @@ def main() -> int:
             counts[act.__name__] = (killed + (code != 0), whole + (code == 0))
         for name, (killed, whole) in counts.items():
             print(f"{name}: {killed} killed, {whole} ended before")
-        # What is left behind can be worked with.
+        # The files that are left can be used.
         ended = subprocess.run([options.embody, "import", "--database", str(trial.database), str(trial.models)], capture_output=True, text=True)
         if ended.returncode != 0:
             print(f"the last import ended with {ended.returncode}: {ended.stderr[-300:]}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Small whole files of every format that is read, as bytes, with nothing but the standard library. Attacks and the fuzz targets' corpus
-are made of them."""
+"""Small valid files of every format that is read, as bytes, made with the standard library alone. Attacks and the corpus of the fuzz
+targets are made from them."""
 import base64
 import json
 import struct
@@ -147,7 +147,8 @@ def png(width: int = 5, height: int = 3, color: int = 2, bits: int = 8, interlac
         before: bytes = b"") -> bytes:
     if pixels is None:
         row = (width * CHANNELS[color] * bits + 7) // 8
-        # Interlaced ones hold the same bytes and a filter byte more for each row of each pass; more than enough is right, too.
+        # Interlaced images hold the same bytes and one filter byte more for each row of each pass; surplus bytes are
+        # allowed.
         rows = height if not interlaced else 3 * height + 8
         pixels = b"".join(b"\0" + bytes((17 * (y + x)) % 251 % (4 if color == 3 else 251) for x in range(row)) for y in range(rows))
     palette = png_chunk(b"PLTE", bytes(i % 256 for i in range(3 << min(bits, 6)))) if color == 3 else b""
@@ -155,7 +156,7 @@ def png(width: int = 5, height: int = 3, color: int = 2, bits: int = 8, interlac
             before + png_chunk(b"IDAT", zlib.compress(pixels)) + png_chunk(b"IEND", b""))
 
 
-# 8 × 8 pixels of grey: the tables of the standard's annex K, of which two codes are used.
+# 8 × 8 grey pixels: the tables of the standard's annex K, of which two codes are used.
 def jpeg(width: int = 8, height: int = 8, start: int = 0xC0) -> bytes:
     def segment(marker: int, content: bytes) -> bytes:
         return struct.pack(">BBH", 255, marker, len(content) + 2) + content

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A server at work for long: clients that play, edit, save, undo, upload and look, imports of good and hostile files into the same database, and fuzz
-targets in turns beside it. Memory, open files, errors and how long answers take are watched.
+"""A server under load for a long time: clients that play, edit, save, undo, upload and view, imports of good and hostile files into the same
+database, and fuzz targets in turn. Memory, open files, errors and response times are measured.
 
 Usage: soak.py EMBODY FUZZERS [--minutes M] [--seed S]   (FUZZERS: the folder of the fuzz targets; tools/soak.sh calls this)
-Fails where the server ends, an answer is wrong or does not come, or memory or open files go on growing.
+Fails where the server ends, an answer is wrong or missing, or memory or open files keep growing.
 """
 import argparse
 import http.client
@@ -27,9 +27,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "server"))
 from viewer import Server, Viewer
 
-# An answer that does not come by then will not come, s; one to an import may take as long as its model may (docs/import.md).
+# An answer that is not there after STALL will not come, s; an import may take as long as its model may
+# (docs/import.md).
 STALL, LONGEST_IMPORT = 60, 1000
-# From the second fifth of the time to the last: what fills caches comes before, a leak goes on. B, files.
+# Allowed growth from the second fifth of the time to the last: caches are full by then, a leak goes on. Bytes, files.
 MORE_MEMORY, MORE_FILES = 96 << 20, 24
 
 
@@ -45,7 +46,7 @@ class Soak:
         scene = self.path / "scene.json"
         scene.write_text(json.dumps({"embody_scene": 1, "title": "Soak", "entities": [floor, *boxes]}))
         self.server = Server(options.embody, str(self.database), str(scene))
-        # The start of a server, and its first database, take their time.
+        # The clock starts after the server, because its start and the first database take time.
         self.until = time.monotonic() + 60 * options.minutes
         self.wrong: list = []
         self.waits: dict = {}
@@ -75,7 +76,7 @@ class Soak:
         return viewer
 
     def play(self, chance: random.Random):
-        """Plays and looks, comes and goes."""
+        """Plays, views, connects and disconnects."""
         while not self.is_over():
             viewer = self.viewer()
             for _ in range(chance.randrange(5, 15)):
@@ -86,7 +87,7 @@ class Soak:
             viewer.close()
 
     def edit(self, chance: random.Random):
-        """Adds, moves, undoes, saves and removes; the scene keeps its size."""
+        """Adds, moves, undoes, saves and removes entities; the scene keeps its size."""
         viewer = self.viewer()
         while not self.is_over():
             entity = {"shape": {"type": "sphere", "radius": 0.1}, "pose": {"position": [5, chance.uniform(1, 5), 5]}}
@@ -135,7 +136,7 @@ class Soak:
             time.sleep(chance.uniform(0, 0.5))
 
     def bring_in(self, chance: random.Random):
-        """Imports by another program, into the database that is served."""
+        """Imports with another program, into the database that is served."""
         models = self.path / "models"
         models.mkdir()
         number = 0
@@ -158,7 +159,7 @@ class Soak:
         programs = sorted(program for program in self.options.fuzzers.glob("fuzz_*") if program.is_file() and os.access(program, os.X_OK))
         if not programs:
             return self.fail(f"no fuzz targets in {self.options.fuzzers}")
-        # Every target some times in an hour; none is cut off by the end.
+        # Each target runs several times per hour; none is interrupted by the end.
         turn = max(1.0, min(60.0, 60 * self.options.minutes / len(programs) / 3))
         while not self.is_over():
             for program in programs:

@@ -49,7 +49,7 @@ def read_frame(stream) -> tuple[int, bytes]:
 
 
 def prepare(worker: pathlib.Path, file: pathlib.Path) -> bytes:
-    """What a real worker answers for one file: the payload of `prepared`."""
+    """The answer of a real worker for one file: the payload of `prepared`."""
     words = [str(worker), str(os.getpid()), str(2 << 30), str(file.parent)]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         kind, _ = read_frame(process.stdout)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Zip archives of which every field may lie."""
+"""Zip archives whose fields can all be set to wrong values."""
 import struct
 import zlib
 
 
 class Member:
-    """One member; fields that are not given are the true ones."""
+    """One member; fields that are not given have their true values."""
 
     def __init__(self, name: bytes, content: bytes = b"", *, packed: bool = True, **fields):
         self.name, self.content, self.fields = name, content, fields
@@ -17,7 +17,7 @@ class Member:
         self.method = 8 if packed else 0
 
     def common(self, where: str) -> bytes:
-        """The fields that a member's own head and the list both have; `where` is "local" or "list", for lies of one alone."""
+        """The fields that the local header and the central directory both have; `where` is "local" or "list", to change only one of them."""
         def field(name: str, true: int) -> int:
             return self.fields.get(f"{where}_{name}", self.fields.get(name, true))
         return struct.pack("<HHHHHIII", 20, field("flags", 0), field("method", self.method), 0, 0x21, field("crc", zlib.crc32(self.content)),
@@ -43,7 +43,7 @@ def build(members: list, *, comment: bytes = b"", count: int | None = None, list
 
 
 def of_many_entries(count: int) -> bytes:
-    """A list of so many members, all with the same bytes: zip64, as a short one cannot count so far."""
+    """A central directory with so many entries, all with the same bytes: zip64, because the older form cannot count so far."""
     member = Member(b"a.obj", b"v 0 0 0\n", packed=False)
     one = build([member])
     split = one.index(b"PK\1\2")

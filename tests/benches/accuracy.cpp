@@ -30,10 +30,11 @@ TEST(simbenchmark, gives_the_same_bits_again) {
         EXPECT_EQ(error_of(test.name, 0.01, 0.8), error_of(test.name, 0.01, 0.8)) << test.name;
 }
 
-// The published figures are of whole runs; a part of one must come to less by far.
+// The published errors are those of whole runs; a part of a run must have a much smaller error.
 TEST(simbenchmark, balls_on_a_pushed_box_keep_to_the_analytic_velocities) {
     EXPECT_LT(error_of("rolling", 0.01, 0.5), 4.93e-9);
-    // The best here is Bullet, 4.93e-9: eight passes leave speed from pushing the first overlap of 20 µm apart.
+    // The best published result is Bullet's, 4.93e-9: here eight iterations leave speed from pushing out the first
+    // overlap of 20 µm.
     EXPECT_LT(error_of("rolling", 0.001, 0.1), 1e-5);
 }
 TEST(simbenchmark, bouncing_balls_keep_their_energy) { EXPECT_LT(error_of("bouncing", 0.01, 4), 1e-6 * 185.953); }

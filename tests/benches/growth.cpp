@@ -17,7 +17,7 @@ TEST(scaling, scenes_end_as_they_must) {
 }
 
 TEST(scaling, only_what_is_awake_has_contacts) {
-    // Ten columns: each cube on the one below or on the ground.
+    // Ten columns of four: each cube rests on the one below or on the ground.
     EXPECT_EQ(measure(Scene::columns_awake, 40)->contacts, 40u);
     EXPECT_EQ(measure(Scene::columns_asleep, 40)->contacts, 0u);
     EXPECT_EQ(measure(Scene::one_awake, 40)->contacts, 1u);

@@ -36,7 +36,7 @@ TEST(race_scenes, have_the_bodies_they_are_known_by) {
     }
 }
 
-// Figures of other engines and other days were taken with just these numbers.
+// Earlier figures and those of other engines were measured with exactly these numbers.
 TEST(race_scenes, keep_their_random_numbers) {
     const auto pen = make_race_scene("table1_g");
     EXPECT_DOUBLE_EQ(pen->bodies.back().position.x, 2.9771544554935008);
@@ -94,7 +94,7 @@ TEST(race_overlap, bodies_that_are_no_number_or_below_the_ground_have_escaped) {
 }
 
 TEST(race_overlap, is_the_depth_of_each_pair_of_kinds) {
-    // 1 cm into the box's top; the turned box stands on an edge.
+    // 1 cm into the box's top; the rotated box stands on an edge.
     EXPECT_NEAR(overlap_at(two_bodies(make_sphere(0.5)), {0, 1.49, 0}).bodies, 0.01, 1e-12);
     EXPECT_NEAR(overlap_at(two_bodies(make_box({0.5, 0.5, 0.5})), {0.2, 1.49, 0}).bodies, 0.01, 1e-12);
     EXPECT_NEAR(overlap_at(two_bodies(make_cylinder(0.5, 0.5)), {0, 1.49, 0}).bodies, 0.01, 1e-12);
@@ -110,7 +110,7 @@ TEST(race_overlap, is_the_depth_in_terrain_along_its_normal) {
     auto scene = *make_race_scene("mesh_1k");
     scene.shapes = {make_sphere(0.05)};
     scene.bodies = {{.shape = 0}};
-    // Above one triangle's middle, small enough to meet no other: both halves of a cell.
+    // Above the centre of one triangle, small enough to meet no other: both halves of a cell.
     const Terrain& terrain = scene.terrain;
     for (const std::size_t triangle : {std::size_t{240 * 240}, std::size_t{240 * 240 + 1}}) {
         const auto corner = [&](std::size_t k) {

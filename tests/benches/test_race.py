@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""`embody bench race` as a person or a program meets it. Never a time: that is what the bench itself is for.
+"""`embody bench race` as a person or a program calls it. Checks no times: the bench itself measures these.
 
 Usage: test_race.py EMBODY
 """

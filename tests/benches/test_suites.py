@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""`embody bench simbenchmark`, `scaling` and `decomposition` as a person or a program meets them.
+"""`embody bench simbenchmark`, `scaling` and `decomposition` as a person or a program calls them.
 
 Usage: test_suites.py EMBODY
 """

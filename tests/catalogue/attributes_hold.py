@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the automatic attributes are measured by, on real models and real objects: `embody evaluate` and its goals.
+"""The automatic attributes of real models and real objects reach their goals: `embody evaluate`.
 
 Usage: attributes_hold.py EMBODY DATABASE REFERENCE_FOLDER
-REFERENCE_FOLDER holds mass-held-out-dev.csv and mass-market-dev.csv. The sealed half is for judging, not for tests: what fails here gets mended,
-and what is mended by it is held out no more.
+REFERENCE_FOLDER holds mass-held-out-dev.csv and mass-market-dev.csv. The sealed half is for judging, not for tests: a failure here gets
+corrected, and data that corrections were made by are no longer held out.
 """
 import json
 import pathlib
@@ -33,13 +33,13 @@ def main() -> int:
     hold("mass within a factor 2", masses["within_factor_2"], 0.72, 1)
     hold("coverage of 80 % intervals", masses["coverage_80"], 0.75, 0.85)
 
-    # Goods of market places under sales texts: harder than the goal, but no worse than they were.
+    # Goods of market places under sales texts: worse than the goal, but not worse than they were.
     market = str(pathlib.Path(reference) / "mass-market-dev.csv")
     goods = evaluate("mass", "--truth", market)["all"]
     hold("mass ALDE of market goods", goods["alde"], 0, 0.7)
     hold("coverage of their 80 % intervals", goods["coverage_80"], 0.75, 0.85)
 
-    # The catalogue's own flags.
+    # Flags of the catalogue itself.
     catalogue = evaluate("catalogue", "--database", database)
     hold("models", catalogue["models"], 800, 1e6)
     hold("category better than default", catalogue["above_default"], 0.97, 1)
@@ -48,7 +48,7 @@ def main() -> int:
     hold("median density sum over mass", catalogue["density_sum"]["median_ratio"], 0.8, 1.25)
     hold("models that contradict themselves", len(catalogue["broken"]), 0, 0)
 
-    # What the simulator makes of them.
+    # Behaviour in the simulation.
     behaviour = evaluate("behaviour", "--database", database)
     hold("models simulated", behaviour["models"], 600, 1e6)
     hold("models that could not be", len(behaviour["failures"]), 0, 0)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What a new user sees first: every demo scene runs on the real models, keeps a law of its own, and comes to rest where it should.
+"""Every demo scene, which a new user sees first, runs on the real models, obeys a law of its own, and comes to rest where it should.
 
 Usage: demo_scenes_hold.py EMBODY DATABASE FOLDER    the folder with the demo scenes; one without an entry below fails
-Found so: dining chairs of the furnished room that rocked from foot to foot for ever, 4 cm away after 20 s.
+It found dining chairs of the furnished room that rocked from foot to foot without end and were 4 cm away after 20 s.
 """
 import concurrent.futures
 import json
@@ -17,7 +17,7 @@ import tempfile
 
 
 class Run:
-    """A scene's recording: what it is made of, and where everything was."""
+    """A scene's recording: its entities, and all their poses."""
 
     def __init__(self, scene: dict, lines: list):
         self.names = {entity["index"]: entity.get("name", str(entity["index"])) for entity in scene["entities"]}
@@ -32,10 +32,10 @@ class Run:
 
 
 def nothing_falls(run: Run):
-    """Not through its floor: what began above zero is still there."""
+    """Nothing falls through the floor: what began above zero stays there."""
     for index, entity in run.last.items():
         if run.first.get(index, entity)["position"][1] < 0:
-            continue  # it waits below for an action
+            continue  # waits below the floor for an action
         lowest = min((p[1] for p in run.points(index)), default=0) if "points" in entity else entity["position"][1]
         if lowest < -0.02 and entity["state"] != "static":
             yield f"{run.names.get(index, index)} is {-lowest:.3f} m below the floor"
@@ -53,7 +53,8 @@ def bathtub(run: Run):
     if outside:
         yield f"{len(outside)} of {len(now)} drops are outside of the tub, such as {outside[0]}"
     yield from within("share of the drops that is left", len(now) / len(before), 0.999, 1)
-    # The water under its surface is as much as before: that surface, by the 98 % of all that lie lower, keeps its height.
+    # The volume of water under the surface is unchanged: the surface, the height below which 98 % of all particles lie,
+    # stays.
     height = lambda points: sorted(p[1] for p in points)[int(0.98 * len(points))]
     yield from within("surface of the water", height(now) - height(before), -0.03, 0.06)
     for toy in ("Duck", "Ball", "Wooden block", "Wooden ring"):
@@ -67,11 +68,11 @@ def honey(run: Run):
     mean = lambda points, axis: sum(p[axis] for p in points) / len(points)
     if len(now) != len(before):
         yield f"{len(before) - len(now)} drops are lost"
-    # A jar's worth that sinks together: slowly, and to all sides alike.
+    # A jar's volume of honey sinks: slowly, and equally to all sides.
     yield from within("height of its middle over that at first", mean(now, 1) / mean(before, 1), 0.6, 0.99)
     for axis in (0, 2):
         yield from within("its middle, aside", mean(now, axis), -0.01, 0.01)
-    # Some of it has run over the bread's edge on to the board; no drop is away from the others.
+    # Some of the honey has run over the bread's edge on to the board; no drop is far from the others.
     yield from within("lowest honey", min(p[1] for p in now), 0.0, 0.055)
     far = sorted(math.hypot(p[0], p[2]) for p in now)
     yield from within("way of the farthest drop beyond those of 99 %", far[-1] - far[int(0.99 * len(far))], 0, 0.02)
@@ -90,7 +91,7 @@ def curtain(run: Run):
 
 def bridge(run: Run):
     planks = [run.last[index]["position"][1] for index in run.called("Plank")]
-    # 1.43 m at its ends, 1.04 in the middle before anything lies on it.
+    # The bridge is 1.43 m high at its ends and 1.04 m in the middle before anything lies on it.
     yield from within("lowest plank", min(planks), 0.75, 1.04)
     yield from within("highest plank", max(planks), 1.2, 1.5)
     for load in ("Crate", "Barrel"):
@@ -145,7 +146,7 @@ def joints(run: Run):
     yield from within("way from the door to its post", math.hypot(door[0] + 3.6, door[2]), 0.4, 0.7)
 
 
-# Seconds to simulate, whether all is asleep then, and the law.
+# Seconds to simulate, whether all is asleep afterwards, and the law.
 SCENES = {
     "bathtub": (3, False, bathtub),
     "curtain_in_the_wind": (3, False, curtain),
@@ -161,7 +162,8 @@ SCENES = {
 }
 
 
-# As many scenes at once as there are cores (two at most), each on a core of its own: workers of one do not wait for the other's.
+# As many scenes at once as there are cores (at most two), each on its own core, so that workers do not wait for another
+# scene's.
 CORES = sorted(os.sched_getaffinity(0))[:2]
 FREE_CORES: "queue.Queue[int]" = queue.Queue()
 
@@ -176,7 +178,7 @@ def on_one_core(words: list) -> subprocess.CompletedProcess:
 
 
 def examine(embody: str, database: str, file: pathlib.Path) -> tuple:
-    """What is wrong with a scene, and a line that says what it did."""
+    """Errors of a scene, and a line with its results."""
     name = file.stem
     if name not in SCENES:
         return [f"{name}: has no law; add one to {pathlib.Path(__file__).name}"], name

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Real hollow models do what they are for: mugs and cups hold a ball, chairs carry a box, tables leave room beneath.
+"""Real hollow models work: mugs and cups hold a ball, chairs carry a box, tables leave room beneath.
 
 Usage: hollow_things_hold.py EMBODY DATABASE
-Each model is dropped into a scene of its own as the import left it: shape, mass and friction are automatic.
+Each model is dropped into a scene of its own as imported: shape, mass and friction are automatic.
 """
 import json
 import pathlib
@@ -33,7 +33,7 @@ def main() -> int:
         found = subprocess.run([embody, "search", "--database", database, "--limit", "60", "--json", word], stdout=subprocess.PIPE, text=True, check=True)
         return [model for model in json.loads(found.stdout)["models"] if model["name"] in names]
 
-    # A small ball above the middle comes to rest inside; a handle puts the middle aside.
+    # A small ball above the centre comes to rest inside; a handle moves the hollow away from the centre of the box.
     for model in find("mug", {"Coffee mug"}) + find("cup", {"Plastic cup"}):
         width, height, depth = model["size"]
         held = False
@@ -48,7 +48,8 @@ def main() -> int:
         if not held:
             wrong.append(f"{model['key']} holds no ball")
 
-    # Four kilograms let down just above the seat stay there, well above the floor and well below the back's top.
+    # A box of 4 kg that is released just above the seat stays there, well above the floor and well below the back's
+    # top.
     for model in find("chair", {"Chair"})[:8]:
         height = model["size"][1]
         box = {"index": 3, "name": "Box", "shape": {"type": "box", "half_extents": [0.08, 0.08, 0.08]},
@@ -60,7 +61,7 @@ def main() -> int:
         if not 0.3 * height < seat < 0.65 * height:
             wrong.append(f"{model['key']}: a box ended {seat:.2f} m above the floor")
 
-    # Something half as high as the table is slid right through beneath; nothing else is near.
+    # A box half as high as the table slides through beneath without a contact.
     for model in find("table", {"Table", "Wooden table"})[:4]:
         width, height, _ = model["size"]
         ball = {"index": 3, "name": "Ball", "shape": {"type": "sphere", "radius": 0.2 * height}, "linear_velocity": [3, 0, 0],

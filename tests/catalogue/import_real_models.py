@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Imports the real catalogues of this machine with the program itself and checks what came of it.
+"""Imports the real catalogues of this machine with the program itself and checks the result.
 
 Usage: import_real_models.py EMBODY CATALOGUES.txt DATABASE
 The database stays for the tests of the Studio.
@@ -37,7 +37,7 @@ def main() -> int:
     if imported.returncode != (3 if report["failures"] else 0):
         wrong.append(f"exit code {imported.returncode}")
 
-    # The same catalogues again: nothing new, nothing twice.
+    # The same catalogues again: nothing is added, nothing is there twice.
     again = json.loads(run(embody, "import", "--database", database, "--json", catalogues[0]).stdout)
     if again["added"] or again["updated"]:
         wrong.append(f"a second import added {again['added']} and updated {again['updated']} models")

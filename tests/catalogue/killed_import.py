@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""An import of real models that is killed again and again loses nothing and comes to the end.
+"""An import of real models that is killed again and again loses nothing and is completed.
 
 Usage: killed_import.py EMBODY CATALOGUES.txt [KILLS [SEED]]
 Takes the smallest catalogue, kills the import with its workers at random times, and checks after each kill that the
-database is whole and that every model that was there is there still, unchanged.
+database is intact and that every model that was there is still there, unchanged.
 """
 import os
 import pathlib
@@ -75,7 +75,7 @@ def main() -> int:
             print(f"the last import ended with {ended.returncode}, or changed what was there")
             return 1
 
-        # The same as an import that nobody disturbs.
+        # The result equals that of an import without kills.
         undisturbed = pathlib.Path(folder) / "other.sqlite"
         command[3] = str(undisturbed)
         subprocess.run(command, stdout=subprocess.DEVNULL)

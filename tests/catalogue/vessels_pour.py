@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Real vessels hold water and pour it: mugs, cups and bowls of the catalogue, with the hulls that the import gave them.
+"""Real vessels hold water and pour it: mugs, cups and bowls of the catalogue, with the hulls of the import.
 
 Usage: vessels_pour.py EMBODY DATABASE
-Each stands full for 3 s, is turned by 100 degrees in 1.75 s and kept so for 1.5 s, over a tray.
+Over a tray each stands full for 3 s, is turned by 100 degrees in 1.75 s and held there for 1.5 s.
 """
 import json
 import math
@@ -14,8 +14,9 @@ import tempfile
 
 STANDS, TURNS, WAITS = 3.0, 1.75, 1.5  # s
 TURN = math.radians(100)
-LIFT = 0.12  # m, of the vessel over the tray
-# Where a cylinder of water fits in: its radius, how far its axis is from the middle of the model's box (a handle puts it aside), its height by the model's.
+LIFT = 0.12  # height of the vessel over the tray, m
+# The cylinder of water that fits in: its radius, the distance of its axis from the centre of the model's box (a handle
+# moves it), its height as a fraction of the model's.
 VESSELS = {
     ("mug", "sweethome3d:Kator Legaz#coffee-mug"): (0.030, -0.015, 0.6),
     ("cup", "sweethome3d:Blend Swap CC-0#plasticCup"): (0.025, 0.0, 0.6),
@@ -63,7 +64,7 @@ def turned_back(rotation: list, v: list) -> list:
 
 
 def inside(frame: dict, size: list) -> int:
-    """Drops in the vessel's box, as it stands."""
+    """Number of particles inside the vessel's box, while it stands."""
     vessel, flat = frame[2], frame[3]["points"]
     count = 0
     for p in zip(flat[0::3], flat[1::3], flat[2::3]):

@@ -60,7 +60,7 @@ STEERING = [chr(c) for c in (*range(0x20), *range(0x7F, 0xA0), *range(0x202A, 0x
 
 
 class Terminal(unittest.TestCase):
-    """No name of a file, a database or a scene steers the terminal, and no line is lost in silence."""
+    """No name of a file, a database or a scene controls the terminal, and a line that could not be written is reported."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -76,7 +76,7 @@ class Terminal(unittest.TestCase):
                 self.assertNotIn(sign, text, repr(text))
         if json_expected:
             return json.loads(result.stdout)
-        # A line end in a name would begin a line of its own.
+        # A line end in a name would start a new line.
         for line in (result.stdout + result.stderr).splitlines():
             self.assertFalse(line.startswith("\u009b"), line)
         return None
@@ -146,7 +146,7 @@ class Terminal(unittest.TestCase):
                 result = subprocess.run([EMBODY, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
             self.assertEqual(result.returncode, 1, words)
             self.assertIn("standard output: cannot be written: No space left on device", result.stderr, words)
-        # Standard error has no place to be told at.
+        # A failure of standard error cannot be reported anywhere.
         with open("/dev/full", "w") as full:
             self.assertEqual(subprocess.run([EMBODY, "show", *database, "none"], stderr=full, timeout=60).returncode, 1)
 
@@ -207,7 +207,7 @@ class Database(unittest.TestCase):
         run("import", "--database", self.database, str(self.path / "models"))
         user = None
         if os.geteuid() == 0:
-            # The administrator may write everywhere, so somebody else has to try.
+            # The administrator may write everywhere, so the test runs as another user.
             user = 65534
             try:
                 subprocess.run([EMBODY, "--version"], user=user, check=True, stdout=subprocess.DEVNULL)
@@ -297,7 +297,7 @@ class Database(unittest.TestCase):
         refused = run("set", "--database", self.database, model, "mass=2", "friction_dynamic=9")
         self.assertEqual(refused.returncode, 1)
         self.assertIn("friction_dynamic", refused.stderr)
-        self.assertIn("2", refused.stderr)  # the range's upper end
+        self.assertIn("2", refused.stderr)  # the upper end of the range
         for command, word in (("set", "masss=2"), ("reset", "masss")):
             unknown = run(command, "--database", self.database, model, word)
             self.assertEqual(unknown.returncode, 1, command)
@@ -368,7 +368,7 @@ class Database(unittest.TestCase):
         self.assertIsNone(planned["batch"])
         self.assertEqual(self.call("history")["changes"], [])
 
-        # An attribute of soft things: nothing is done, and every model that refuses is named.
+        # An attribute of soft bodies: nothing is changed, and every model that refuses is named.
         refused = self.call("set", "--all", "mass=7", "youngs_modulus=1e5", code=1)
         self.assertIn("oak chair", [r["name"] for r in refused["refused"]])
         self.assertEqual(self.call("history")["changes"], [])
@@ -384,7 +384,7 @@ class Database(unittest.TestCase):
         self.assertEqual(self.call("history", "--since", "2200-01-01")["changes"], [])
         self.assertEqual(run("history", "--database", self.database, "--since", "soon").returncode, 1)
 
-        # Hers is older and was changed since; the last of ada's goes back to it.
+        # The value of eva's batch was changed since, so its undo is refused; the undo of ada's last one restores it.
         self.assertEqual(self.call("undo", str(history[1]["batch"]), code=1)["refused"][0]["name"], "red chair")
         self.assertEqual(self.call("undo", USER="ada")["changed"], 4)
         shown = self.call("show", "red chair")
@@ -429,7 +429,7 @@ class Scenes(unittest.TestCase):
         result = run("check", str(wrong))
         self.assertEqual(result.returncode, 1)
         self.assertIn("colour", result.stdout + result.stderr)
-        self.assertIn("color", result.stdout + result.stderr)  # the nearest right name
+        self.assertIn("color", result.stdout + result.stderr)  # the correct name that is closest
         simulated = run("simulate", str(wrong), "--seconds", "0.1")
         self.assertEqual(simulated.returncode, 1)
         self.assertIn("colour", simulated.stderr)
@@ -549,7 +549,7 @@ class Scenes(unittest.TestCase):
             record = pathlib.Path(folder) / "out.jsonl"
             words = [EMBODY, "simulate", "table1_e", "--seconds", "1000000", "--record", str(record), "--json"]
             with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-                # The header is on disk before the first step.
+                # Wait for the header, which is written before the first step.
                 while not record.exists() or record.stat().st_size == 0:
                     self.assertIsNone(process.poll())
                     time.sleep(0.05)
@@ -581,7 +581,7 @@ class Scenes(unittest.TestCase):
 
 
 class Server(unittest.TestCase):
-    """What a client may do to the server: nothing that stops it."""
+    """No message of a client stops the server."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()

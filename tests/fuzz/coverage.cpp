@@ -14,7 +14,7 @@ bool called = false;
 }  // namespace
 
 extern "C" void __sanitizer_cov_trace_pc() {
-    // Relative to this function, as the program lies elsewhere each time.
+    // Relative to this function, because the program is loaded at another address each time.
     const auto here = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)) -
                       reinterpret_cast<std::uintptr_t>(&__sanitizer_cov_trace_pc);
     const std::uintptr_t place = (here ^ (here >> 16)) & (embody::fuzz::coverage_size - 1);

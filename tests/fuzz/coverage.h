@@ -6,14 +6,14 @@
 
 namespace embody::fuzz {
 
-/// Whether the program was built so that it says which of its branches run (-fsanitize-coverage=trace-pc).
+/// Whether the program was built to report its executed branches (-fsanitize-coverage=trace-pc).
 bool coverage_is_known();
-/// Before an input is run.
+/// Resets the counters; to be called before an input is run.
 void forget_coverage();
-/// After it: how many pairs of branches, or how often they ran by powers of two, were never seen in `seen`, to which
-/// they are added.
+/// To be called after an input was run: returns how many pairs of branches, or powers of two of their counts, are not
+/// in `seen`, and adds them to it.
 std::size_t add_coverage(std::uint8_t* seen);
-/// Bytes of `seen`.
+/// Size of `seen`, bytes.
 inline constexpr std::size_t coverage_size = 1 << 16;
 
 }  // namespace embody::fuzz

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-// Of the address sanitizer, where the program is built with it.
+// Defined by the address sanitizer where the program is built with it.
 extern "C" __attribute__((weak)) const char* __asan_get_report_description();
 extern "C" __attribute__((weak)) int __asan_report_present();
 
@@ -21,7 +21,7 @@ namespace {
 
 LastWords* words = nullptr;
 
-/// Whether calls into it fail because of who calls.
+/// Whether a failure in the module is the fault of its caller.
 bool serves_others(std::string_view module) {
     for (const char* name :
          {"libc.so", "libm.so", "libpthread", "ld-linux", "libstdc++", "libgcc_s", "libasan", "libubsan", "vdso"}) {
@@ -30,7 +30,7 @@ bool serves_others(std::string_view module) {
     return false;
 }
 
-/// Operators new and delete are the program's own (sanitizer.cpp), whoever calls them.
+/// The operators new and delete are defined in this program (sanitizer.cpp), whoever calls them.
 bool is_allocation(const char* symbol) {
     return symbol != nullptr &&
            (std::string_view(symbol).starts_with("_Zn") || std::string_view(symbol).starts_with("_Zd"));
@@ -43,7 +43,7 @@ void copy(std::array<char, size>& to, const char* text) {
 }
 
 void tell(int signal) {
-    // No handler of a signal may do this much. The process ends anyhow, and where it cannot the parent ends it.
+    // A signal handler should not do so much, but the process ends in any case; where it hangs, the parent ends it.
     copy(words->signal, sigabbrev_np(signal) == nullptr ? "?" : sigabbrev_np(signal));
     if (__asan_report_present != nullptr && __asan_report_present() != 0)
         copy(words->signal, __asan_get_report_description());
@@ -56,7 +56,7 @@ void tell(int signal) {
         const char* slash = std::strrchr(where.dli_fname, '/');
         const char* module = slash == nullptr ? where.dli_fname : slash + 1;
         if (serves_others(module) || is_allocation(where.dli_sname)) continue;
-        // The first of the program is this function, called by the system.
+        // The program's first frame is this function, called by the system.
         if (!std::exchange(is_below_this, true)) continue;
         copy(words->module, module);
         break;
@@ -69,7 +69,7 @@ void tell(int signal) {
 
 void watch_crashes(LastWords* last_words) {
     words = last_words;
-    // The first call loads a library, which a handler should not.
+    // The first call of backtrace() loads a library, which a signal handler should not do.
     std::array<void*, 1> none{};
     backtrace(none.data(), 1);
     static std::array<std::uint8_t, 1 << 18> own_stack;

@@ -46,15 +46,15 @@ struct Settings {
     std::vector<std::filesystem::path> corpus;
 };
 
-/// What parent and children share.
+/// Memory that parent and children share.
 struct Shared {
     LastWords last_words;
-    std::uint64_t run;         // the number of the input in hand
-    std::uint64_t pairs;       // of branches that were seen
-    std::size_t size;          // of the input in hand
-    double longest;            // s, that an input took
-    std::uint64_t longest_at;  // and which one
-    std::size_t found, room;   // inputs that reached something new, and the bytes that they take
+    std::uint64_t run;         // number of the current input
+    std::uint64_t pairs;       // pairs of branches that were seen
+    std::size_t size;          // size of the current input
+    double longest;            // longest time of an input, s
+    std::uint64_t longest_at;  // number of that input
+    std::size_t found, room;   // inputs that reached something new, and their total size
     std::size_t found_ends[most_found];
     std::uint8_t seen[coverage_size];
     std::uint8_t input[largest_input * 2];
@@ -129,10 +129,10 @@ void keep_found(Shared& shared, const Bytes& bytes) {
 
 using Clock = std::chrono::steady_clock;
 
-/// In the child: one input after the other, from shared.run on.
+/// In the child: runs one input after the other, beginning with shared.run.
 [[noreturn]] void run_inputs(const Settings& settings, const Inputs& inputs, Shared& shared, Clock::time_point until) {
 #ifndef __SANITIZE_ADDRESS__
-    // As a worker has it.
+    // The memory limit of a worker.
     const rlimit memory{std::size_t{3} << 30, std::size_t{3} << 30};
     setrlimit(RLIMIT_AS, &memory);
 #endif
@@ -154,7 +154,7 @@ using Clock = std::chrono::steady_clock;
         if (took > shared.longest) shared.longest = took, shared.longest_at = shared.run;
         shared.pairs += pairs;
         if (pairs > 0 && shared.run >= inputs.corpus_size()) keep_found(shared, bytes);
-        // Room for the sanitizer's quarantine and what libraries leak: a new child now and then.
+        // The sanitizer's quarantine and leaks of libraries take memory, so a new child is started from time to time.
         if (shared.run % 20'000 == 19'999) {
             ++shared.run;
             _exit(98);
@@ -172,7 +172,7 @@ std::string write_input(const Settings& settings, const Shared& shared, const st
     return file.string();
 }
 
-/// 0, or 1 where something of our own failed.
+/// Exit code: 0, or 1 where code of our own failed.
 int run(const Settings& settings, const std::string& target) {
     Shared& shared = shared_memory();
     const Inputs inputs(settings, shared);

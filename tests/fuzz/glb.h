@@ -8,7 +8,7 @@
 
 namespace embody::fuzz {
 
-/// Sets the lengths of a binary glTF to what there is: the JSON ends at the last brace before the binary chunk's name.
+/// Sets the lengths of a binary glTF to the true ones: the JSON ends at the last brace before the binary chunk's name.
 inline std::size_t with_glb_lengths(std::uint8_t* data, std::size_t size) {
     constexpr std::string_view chunk_name("BIN\0", 4);
     if (size < 28) return size;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the seeds of the fuzz targets: small whole files of everything that is read. Files of the corpus with other names (what a target
-once failed on) stay.
+"""Writes the seeds of the fuzz targets: small valid files of every format that is read. Files of the corpus with other names (on which a
+target once failed) stay.
 
 Usage: make_corpus.py EMBODY   (the built program; its worker lies beside it)
 """
@@ -63,7 +63,7 @@ def put(target: str, name: str, content: bytes):
 
 
 def with_small_picture(model: bytes) -> bytes:
-    """The payload of a prepared model, its picture of 256 × 256 exchanged for a small one."""
+    """The payload of a prepared model, with a small picture in place of the one of 256 × 256."""
     geometry_end = 8 + int.from_bytes(model[:8], "little")
     picture_end = geometry_end + 8 + int.from_bytes(model[geometry_end:geometry_end + 8], "little")
     picture = samples.png()
@@ -71,14 +71,14 @@ def with_small_picture(model: bytes) -> bytes:
 
 
 def scenes():
-    """The smallest of the demos; everything.json beside them is what tests/scene/sample_documents.cpp calls `everything`."""
+    """The smallest of the demo scenes; everything.json beside them is what tests/scene/sample_documents.cpp calls `everything`."""
     for file in (HERE.parent.parent / "data/scenes").glob("*.json"):
         if file.stat().st_size < 5000:
             put("scene", file.name, file.read_bytes())
 
 
 def worlds():
-    """Programs of tests/fuzz/targets/world.cpp: a byte for each call, as they are listed there, then its choices."""
+    """Programs for tests/fuzz/targets/world.cpp: a byte for each call, as listed there, then the bytes of its choices."""
     step, shape, body, joint, deform, pour, place, push, change, several, switch, destroy, destroy_else = 0, 1, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14
     change_joint, change_deformable, hold, nodes, change_fluid, move_fluid, settings, ask, ground = range(15, 24)
     run = [step, 7] * 3

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One model file, alone in its place: what a worker does with it before it measures it.
+// One model file, alone in a folder: what a worker does with it before it measures the model.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ inline void require_sound(const interchange::RawMesh& mesh, const interchange::R
     }
 }
 
-/// read_model()'s promises, of a file of this name.
+/// Checks the promises of read_model() for a file of this name.
 inline void read_model_file(const std::string& name, std::span<const std::uint8_t> bytes) {
     const auto scene = interchange::read_model(OneFile(name, bytes), name);
     if (!scene) return require_reasons(scene.error());

@@ -45,7 +45,7 @@ std::size_t any_place(const Bytes& bytes, Random& random) {
     return static_cast<std::size_t>(random.below(bytes.size()));
 }
 
-/// A piece of `from`, short ones more often than long ones.
+/// A block of `from`; short ones are more likely than long ones.
 std::span<const std::uint8_t> any_block(std::span<const std::uint8_t> from, Random& random) {
     if (from.empty()) return {};
     const std::size_t begin = static_cast<std::size_t>(random.below(from.size()));
@@ -54,9 +54,9 @@ std::span<const std::uint8_t> any_block(std::span<const std::uint8_t> from, Rand
     return from.subspan(begin, std::min(length, from.size() - begin));
 }
 
-/// Puts `block` in at `at`, in the place of `replaced` bytes.
+/// Inserts `block` at `at` in the place of `replaced` bytes.
 void put(Bytes& bytes, std::size_t at, std::size_t replaced, std::span<const std::uint8_t> block) {
-    const Bytes copy(block.begin(), block.end());  // it may be of `bytes` itself
+    const Bytes copy(block.begin(), block.end());  // the block may be a part of `bytes`
     const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
     const auto end = begin + static_cast<std::ptrdiff_t>(std::min(replaced, bytes.size() - at));
     bytes.insert(bytes.erase(begin, end), copy.begin(), copy.end());
@@ -66,7 +66,7 @@ void put(Bytes& bytes, std::size_t at, std::size_t replaced, std::string_view te
     put(bytes, at, replaced, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
-/// A word of 1, 2, 4 or 8 bytes in either order: another one, or a little more or less than it was.
+/// Changes a word of 1, 2, 4 or 8 bytes in either byte order: replaces it, or adds or subtracts a small number.
 void change_word(Bytes& bytes, Random& random) {
     const std::size_t size = std::min(std::size_t{1} << random.below(4), bytes.size());
     const std::size_t at = static_cast<std::size_t>(random.below(bytes.size() - size + 1));
@@ -78,7 +78,7 @@ void change_word(Bytes& bytes, Random& random) {
     for (std::size_t i = 0; i < size; ++i) bytes[place(i)] = static_cast<std::uint8_t>(word >> (8 * i));
 }
 
-/// A number that is written in digits.
+/// Changes a number that is written in digits.
 void change_numeral(Bytes& bytes, Random& random) {
     const auto is_digit = [](std::uint8_t c) { return std::isdigit(c) != 0; };
     const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(any_place(bytes, random));
@@ -126,7 +126,7 @@ void change_once(Bytes& bytes, std::span<const std::uint8_t> other, Random& rand
             put(bytes, at, random.below(2) == 0 ? 0 : any_block(bytes, random).size(), any_block(other, random));
             break;
         default:
-            // Seldom, as little is left to look at.
+            // Rarely, because little of the input is left.
             if (random.below(4) == 0) bytes.resize(at);
             break;
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the sanitizers behave in fuzz targets, where they are compiled in: every report ends the process by SIGABRT, and
-// memory that runs out throws std::bad_alloc, as it does in the program. (The address sanitizer's own `new` ends the
-// process.)
+// Behaviour of the sanitizers in fuzz targets that are built with them: every report ends the process by SIGABRT, and
+// exhausted memory throws std::bad_alloc, as in the program. (The address sanitizer's own `new` ends the process.)
 #include <cstdlib>
 #include <new>
 

@@ -11,14 +11,14 @@
 
 namespace embody::fuzz {
 
-/// Where the children of one driver keep files: in memory where the system has such a folder.
+/// Folder for the files of one driver's children: in memory where the system has such a folder.
 inline std::filesystem::path scratch_folder(pid_t driver) {
     const std::filesystem::path memory = "/dev/shm";
     const auto base = access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
     return base / ("embody-fuzz-" + std::to_string(driver));
 }
 
-/// `bytes` as a file of the child's own; the next call with the name replaces it. The path is canonical.
+/// Writes `bytes` to a file of this child; the next call with the name replaces it. The path is canonical.
 inline std::filesystem::path scratch_file(const std::string& name, std::span<const std::uint8_t> bytes) {
     static const std::filesystem::path folder = [] {
         const auto made = scratch_folder(getppid());

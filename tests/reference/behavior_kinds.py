@@ -14,9 +14,9 @@ import csv
 import pathlib
 import sys
 
-# BEHAVIOR does not tell what moves from what stands, so its rigid bodies agree with three of our kinds. Its physical
-# substances come as particles that are simulated one by one, fine (micro) or coarse (macro): heaps of grains. Visual
-# substances (dust, stains, paint) are coatings that belong to another body: we have no such kind.
+# BEHAVIOR does not distinguish movable from fixed rigid bodies, so its rigid bodies agree with three of our kinds. Its
+# physical substances are particles that are simulated one by one, fine (micro) or coarse (macro): piles of grains.
+# Visual substances (dust, stains, paint) are coatings on another body: we have no such kind.
 KINDS_OF_TYPE = {
     "rigidBody": ("static", "rigid", "articulated"),
     "softBody": ("soft",),
@@ -41,7 +41,7 @@ def wordnet_nouns(folder):
 
 
 def words_of(synset, senses, lemmas):
-    """WordNet's words of a key such as chair.n.01; nothing where WordNet 3.0 has no such noun."""
+    """WordNet's words for a key such as chair.n.01; empty where WordNet 3.0 has no such noun."""
     lemma, part, number = synset.rsplit(".", 2)
     offsets = senses.get(lemma.lower(), [])
     return lemmas[offsets[int(number) - 1]] if part == "n" and 1 <= int(number) <= len(offsets) else []

@@ -14,13 +14,13 @@ COLUMNS = (
     "id name category dim_x_m dim_y_m dim_z_m mesh mesh_volume_m3 mass_kg mass_kind source licence note".split()
 )
 SIZES = ("dim_x_m", "dim_y_m", "dim_z_m")
-TABLES = (("held-out", 250, 6), ("market", 600, 2))  # name, least number of objects and of sources
+TABLES = (("held-out", 250, 6), ("market", 600, 2))  # name, minimum number of objects and of sources
 FITTED_SOURCES = {"abid", "ansur", "car", "fish", "fruit", "wands", "ycb"}
 LEAST_BULK_DENSITY, GREATEST_BULK_DENSITY = 1.0, 23000.0  # kg/m3; osmium has 22,600
 
 
 def half_of(identifier):
-    """Which half an id belongs to: "dev" where the first byte of its SHA-256 is even, else "sealed"."""
+    """The half that an id belongs to: "dev" where the first byte of its SHA-256 is even, else "sealed"."""
     return "dev" if hashlib.sha256(identifier.encode()).digest()[0] % 2 == 0 else "sealed"
 
 

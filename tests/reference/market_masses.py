@@ -5,9 +5,9 @@
 
 AMAZON.csv: PromptCloud's sample of Amazon.com listings of January 2020 (columns "Product Name", "Category",
 "Product Specification", "Product Dimensions", "Asin", "Uniq Id"). TOYS.csv: PromptCloud's toys on Amazon.co.uk, cut by
-categories (columns product_id, product_name, product_information, category, subcategory_1 to 4). Where they can be
-read is in README.md. Nobody chooses: every listing that states three sides and a mass is taken, in the order of the
-SHA-256 of its id, at most nine of a shelf; what is left out is said in README.md.
+categories (columns product_id, product_name, product_information, category, subcategory_1 to 4). README.md says where
+to download them. Nobody chooses: every listing that states three sides and a mass is taken, in the order of the
+SHA-256 of its id, at most nine of a shelf; README.md lists what is left out.
 """
 
 import csv
@@ -21,7 +21,7 @@ from check_mass_held_out import COLUMNS, half_of
 
 OUNCE, POUND, INCH = 0.028349523125, 0.45359237, 0.0254
 MOST_OF_A_SHELF, LONGEST_NAME = 9, 60
-BELIEVABLE = (15, 3000)  # kg per cubic metre of box: lighter and heavier goods are misstated
+BELIEVABLE = (15, 3000)  # kg per cubic metre of box: lighter and heavier goods have wrong data
 SEVERAL = re.compile(
     r"\b(pack of|set of|lot of|bundle|\d+[- ]?(pack|pcs|pieces? (?!puzzle|jigsaw))|assorted|\(\d+ ?(count|pack|pcs))"
     r"|^\d+ x "
@@ -39,7 +39,7 @@ SOURCES = {
     ),
 }
 
-# The shop's shelf → our words for what lies on it.
+# Shelf of the shop → our words for its goods.
 SHELVES = {
     "3-D Puzzles": "puzzle; toy",
     "Action Figures": "action figure; toy",

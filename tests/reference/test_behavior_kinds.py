@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""behavior_kinds.py on a small table of its own: which rows it keeps, their words and kinds."""
+"""behavior_kinds.py on a small table: which rows it keeps, their words and kinds."""
 
 import csv
 import pathlib

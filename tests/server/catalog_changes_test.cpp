@@ -18,7 +18,7 @@ constexpr int chairs = 40, puddles = 5;
 class CatalogChangesTest : public SceneThreadTest {
 protected:
     void SetUp() override {
-        // One of each is imported, the others are like it.
+        // One model of each kind is imported; the others are copies.
         const auto taxonomy = attributes::Taxonomy::load(catalog::taxonomy_folder, {});
         auto connection = database::open_model_database(folder_ / "models.sqlite");
         ASSERT_TRUE(taxonomy && connection);
@@ -73,7 +73,7 @@ protected:
     }
     json value(const std::string& model, const std::string& name) { return entry(model, name).value("value", json()); }
 
-    std::unique_ptr<catalog::Catalog> other_;  ///< as another program has it
+    std::unique_ptr<catalog::Catalog> other_;  ///< the database as another program has it open
 };
 
 TEST_F(CatalogChangesTest, WhatIsWrongIsRefusedByFieldAndChangesNothing) {
@@ -146,7 +146,7 @@ TEST_F(CatalogChangesTest, OneHistoryTakesBackSceneAndCatalogueInTurn) {
     EXPECT_EQ(value(key(39), "mass"), 9);
     EXPECT_EQ(run("hello").at("scene").at("entities").size(), 3u);
 
-    // The document is not touched by changes of models.
+    // Changes of models do not change the document.
     run("scene.save", {{"name", "chairs"}});
     change({{"keys", {key(2)}}}, "mass", 2);
     EXPECT_EQ(run("hello").at("unsaved"), false);
@@ -172,13 +172,13 @@ TEST_F(CatalogChangesTest, ABatchIsTakenBackByItsNumberAndThatTooCanBeTakenBack)
     EXPECT_EQ(entry(key(0), "mass").at("overridden"), false);
     EXPECT_EQ(run("edit.undo").at("undone"), nullptr);
 
-    // As the last act it goes the way of undo: redo does it again.
+    // The change is the last action, so undo takes it back; redo applies it again.
     change({{"keys", {key(1)}}}, "mass", 5);
     const json last = run("catalog.history", {{"limit", 1}}).at("batches")[0].at("batch");
     run("catalog.undo", {{"batch", last}});
     EXPECT_EQ(run("edit.redo").at("redone"), "Set Mass of oak chair 1");
     EXPECT_EQ(value(key(1), "mass"), 5);
-    // So does the undo of that, which is what redo would take next.
+    // The same for the undo of that change, which redo would repeat next.
     run("edit.undo");
     const json undo = run("catalog.history", {{"limit", 1}}).at("batches")[0];
     EXPECT_EQ(undo.at("command"), "undo");
@@ -197,7 +197,7 @@ TEST_F(CatalogChangesTest, WhatAnotherProgramChangedSinceIsNotUndoneAndUndoGoesO
     EXPECT_NE(why.find("oak chair 5"), std::string::npos) << why;
     EXPECT_EQ(value(key(0), "mass"), 9) << "all or nothing";
     EXPECT_EQ(value(key(5), "mass"), 12);
-    // The batch stays in the audit; undo reaches what was done before it.
+    // The batch stays in the history; undo reaches the change before it.
     EXPECT_EQ(run("edit.undo").at("undone").get<std::string>().find("Add"), 0u);
 }
 
@@ -299,7 +299,7 @@ TEST_F(CatalogChangesTest, AllClientsAreToldAlsoOfWhatOtherProgramsDo) {
     EXPECT_EQ(value_in_scene(entity, "mass"), 77);
 }
 
-// Every act is all or nothing and finds what the one before it left, whoever did it.
+// Every change is all or nothing and sees the result of the one before it, whoever made it.
 TEST_F(CatalogChangesTest, TwoClientsAndAnotherProgramAtOnceLoseNothing) {
     constexpr int rounds = 15;
     std::thread program([&] {
@@ -330,7 +330,7 @@ TEST_F(CatalogChangesTest, TwoClientsAndAnotherProgramAtOnceLoseNothing) {
         EXPECT_EQ(value(key(chair), "mass"), std::get<double>(*present.at(key(chair)))) << chair;
 }
 
-// Long work says how far it is, and the client that asked may stop it: then nothing was done.
+// A long command reports its progress, and the client that sent it may stop it: then nothing is changed.
 TEST_F(CatalogChangesTest, LongWorkTellsHowFarItIsAndMayBeStopped) {
     constexpr int stools = 8000;
     const std::int64_t chair = other_->model(key(0))->id;

@@ -35,11 +35,11 @@ TEST(ConnectionBook, TheLongestIdleOfTheSameAddressMakesRoom) {
     auto newcomer = book.admit("10.0.0.1");
     ASSERT_TRUE(newcomer);
     EXPECT_EQ(given_up, std::vector{2}) << "1 is busy, 0 is another client's";
-    // In all: whoever is idle for longest.
+    // The limit of all addresses: the connection that has been idle for longest makes room.
     auto stranger = book.admit("10.0.0.3");
     ASSERT_TRUE(stranger);
     EXPECT_EQ(given_up, (std::vector{2, 0}));
-    // Who made room leaves no trace, and says nothing any more.
+    // The closed connection has no entry any more, and its calls do nothing.
     places[2].be_busy();
     EXPECT_FALSE(places[2].become_viewer());
 }

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A debug frame read as docs/protocol.md tells.
+/// A debug frame, decoded according to docs/protocol.md.
 struct Read {
     std::uint32_t flags = 0, lines_left_out = 0, points_left_out = 0;
     double time = 0;
@@ -53,7 +53,7 @@ protected:
         run("entity.add", {{"entity", {{"shape", box}, {"pose", {{"position", {0, 0.5, 0}}}}}}});
     }
     std::shared_ptr<const std::string> frame(ClientId client = 1) {
-        // It follows the reply.
+        // The frame follows the reply.
         for (int i = 0; i < 1000; ++i) {
             if (auto found = thread_->take_debug_frame(client)) return found;
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -71,7 +71,7 @@ TEST_F(DebugFrames, ComeToWhoAskedAndSayWhatWasAskedFor) {
     const Read read(*bytes);
     EXPECT_EQ(read.flags, 1u | 4u);
     EXPECT_NEAR(read.time, 3.0 / 60, 1e-12);
-    // The new scene's floor is a box too; the other one stands on four points and is slow.
+    // The new scene's floor is a box, too; the other box rests on four contact points and is slow.
     EXPECT_EQ(read.lines, (std::map<int, std::size_t>{{0, 12}, {3, 12}, {6, 0}, {7, 4}}));
     EXPECT_EQ(read.points, (std::map<int, std::size_t>{{0, 0}, {3, 0}, {6, 4}, {7, 0}}));
     EXPECT_EQ(read.lines_left_out + read.points_left_out, 0u);

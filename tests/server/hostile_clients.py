@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What others may do to a server without freezing it, filling its memory or losing what was promised: long commands,
-pages of other sites, floods of commands, idle connections, uploads that never end; and that SIGTERM ends it in time.
+"""Hostile clients do not freeze the server, fill its memory or make it lose acknowledged changes: long commands,
+pages of other sites, floods of commands, idle connections, uploads that never end; and SIGTERM ends it in time.
 
 Usage: hostile_clients.py EMBODY [part of a test's name …]
 """
@@ -20,22 +20,22 @@ import time
 
 from viewer import Server, Viewer
 
-# Nobody waits for ever: a server that is frozen fails by this, s.
+# A frozen server fails the test by this timeout, s.
 PATIENCE = 30
-# SIGTERM's promise, s (docs/protocol.md).
+# Longest time until SIGTERM has ended the server, s (docs/protocol.md).
 LONGEST_END = 3
 
 BOX = {"index": 1, "shape": {"type": "box", "half_extents": [0.3, 0.2, 0.3]}, "pose": {"position": [0, 1, 0]}}
 
 
 def heap(entities: int) -> list:
-    """Boxes that move for long: a command of many steps takes its time with them."""
+    """Boxes that move for long, so that a command of many steps takes long."""
     return [{"index": i + 1, "shape": {"type": "box", "half_extents": [0.1, 0.1, 0.1]}, "allow_sleep": False,
              "pose": {"position": [0.21 * (i % 10), 0.3 + 0.21 * (i // 100), 0.21 * (i // 10 % 10)]}} for i in range(entities)]
 
 
 class Stage:
-    """A server on a scene of its own, in a folder that goes with it."""
+    """A server with a scene, in a temporary folder."""
 
     def __init__(self, embody: str, entities=(BOX,)):
         self.folder = tempfile.TemporaryDirectory()
@@ -64,11 +64,11 @@ class Stage:
         return answer, body
 
     def saved_after_end(self) -> list:
-        """The autosaves of the server's home folder; ask before it is closed."""
+        """The autosaves in the server's home folder; to be read before it is closed."""
         return sorted(pathlib.Path(self.server.home.name).rglob("autosave/*.json"))
 
     def end(self, wrong: list, what: str):
-        """SIGTERM, and how long it took to end."""
+        """Sends SIGTERM and returns how long the server took to end."""
         began = time.monotonic()
         self.server.process.send_signal(signal.SIGTERM)
         try:
@@ -85,7 +85,7 @@ class Stage:
 
 
 def busy_viewer(stage: Stage, steps: int) -> Viewer:
-    """A client whose command is being carried out."""
+    """A client whose command is being executed."""
     viewer = Viewer(stage.port)
     viewer.do("hello")
     viewer.ask("simulation.step", count=steps)
@@ -162,7 +162,7 @@ def test_answers_protect_the_page(embody: str, wrong: list):
 
 
 def test_a_flood_of_commands_gets_every_reply(embody: str, wrong: list):
-    # More than may wait, behind one that takes long, so that reading pauses.
+    # More commands than may wait, behind one that takes long, so that reading pauses.
     count = 2000
     with Stage(embody, heap(200)) as stage:
         viewer = Viewer(stage.port)
@@ -203,7 +203,7 @@ def test_idle_connections_keep_nobody_out(embody: str, wrong: list):
         viewer.do("hello")
         viewer.do("entity.transform", poses=[{"index": 1, "position": [0, 2, 0]}])
         held = idle_connections(stage.port, 1500)
-        # One in two says half a request and no more.
+        # Every second connection sends half a request and no more.
         for connection in held[::2]:
             try:
                 connection.sendall(b"GET / HTTP/1.1\r\nHost: ")
@@ -282,10 +282,10 @@ def test_uploads_fill_no_memory_and_are_counted(embody: str, wrong: list):
             try:
                 refusals += b" 503 " in connection.recv(4096).split(b"\r\n")[0]
             except OSError:
-                refusals += 1  # hung up while it was still sending
+                refusals += 1  # the connection was closed while the client was still sending
         if refusals != 4:
             wrong.append(f"{refusals} of 4 uploads too many were refused")
-        # Those that go away leave nothing.
+        # Nothing is left of clients that disconnect.
         for connection in unfinished:
             connection.close()
         until = time.monotonic() + PATIENCE
@@ -293,7 +293,7 @@ def test_uploads_fill_no_memory_and_are_counted(embody: str, wrong: list):
             time.sleep(0.1)
         if drafts(stage):
             wrong.append(f"{len(drafts(stage))} uploads are left of clients that went away")
-        # And the next one finds a place.
+        # And the next upload is accepted.
         answer, body = stage.get("/import?name=broken.stl", method="POST")
         if answer.status != 422:
             wrong.append(f"an upload after these is answered {answer.status}: {body[:200]!r}")
@@ -322,7 +322,7 @@ def test_sigterm_ends_whatever_runs(embody: str, wrong: list):
         viewer = Viewer(stage.port)
         viewer.do("hello")
         viewer.do("entity.transform", poses=[{"index": 1, "position": [0, 5, 0]}])
-        # A flood behind a long command: reading pauses, and nobody reads the replies.
+        # A flood of commands behind a long one: reading pauses, and nobody reads the replies.
         viewer.ask("simulation.step", count=100_000)
         for _ in range(600):
             viewer.ask("entity.attributes", index=1)
@@ -391,7 +391,7 @@ def test_sigterm_ends_an_import(embody: str, wrong: list):
 
 
 def test_sigterm_ends_a_step_that_takes_long(embody: str, wrong: list):
-    # One step of very many grains takes longer than the server may.
+    # One step of very many grains takes longer than the time for the server's end.
     heaps = [{"index": i + 1, "shape": {"type": "box", "half_extents": [1, 1, 1]}, "pose": {"position": [0, 1.1 + 2.2 * i, 0]},
               "attributes": {"kind": "granular", "grain_budget": 20_000}} for i in range(4)]
     with Stage(embody, heaps) as stage:
@@ -409,7 +409,7 @@ def test_sigterm_ends_a_step_that_takes_long(embody: str, wrong: list):
 
 
 def main() -> int:
-    # More connections than the server allows are opened here.
+    # The tests open more connections than the server allows.
     hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
     embody, *wanted = sys.argv[1:]

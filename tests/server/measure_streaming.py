@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What a server sends to one viewer, by scene: while things move, and when as much as can has come to rest.
+"""Measures the bytes that a server sends to one viewer, by scene: while bodies move, and after all that can has come to rest.
 
 Usage: measure_streaming.py EMBODY DATABASE SCENE.json…    prints a table in Markdown (docs/protocol.md)
 
-A second while things move is 60 frames, one a step, however slow this computer is; at rest it is what came in a second of simulated time.
+A second with moving bodies is 60 frames, one for each step, however slow this computer is; at rest it is a second of simulated time.
 """
 import pathlib
 import sys
@@ -16,7 +16,7 @@ MOVING_S, RESTING_S, MOST_WAITED_S = 4, 4, 90
 
 
 def play(viewer: Viewer, seconds: float) -> dict:
-    """Plays for so long and counts what comes."""
+    """Plays for this time and counts the received bytes."""
     viewer.do("simulation.play")
     frames, texts, first, last, statistics = [], 0, None, None, {}
     until = time.monotonic() + seconds
@@ -36,7 +36,7 @@ def play(viewer: Viewer, seconds: float) -> dict:
 
 
 def wait_for_rest(viewer: Viewer):
-    """Steps until nothing is active any more, or for as long as one waits."""
+    """Steps until nothing is active any more, or until the time limit."""
     until = time.monotonic() + MOST_WAITED_S
     while time.monotonic() < until:
         viewer.do("simulation.step", count=60)

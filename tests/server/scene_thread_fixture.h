@@ -16,7 +16,7 @@
 
 namespace embody::server {
 
-/// A scene thread on an empty database, the replies of its clients, and the events that all hear.
+/// A scene thread on an empty database, the replies to its clients, and the events for all clients.
 class SceneThreadTest : public testing::Test {
 protected:
     using json = nlohmann::json;
@@ -52,7 +52,7 @@ protected:
         std::filesystem::remove_all(folder_);
     }
 
-    /// The reply to a message of a client, whichever it is.
+    /// Sends a message of a client and returns the next reply.
     json ask(std::string message, ClientId client = 1) {
         thread_->post(client, std::move(message));
         return next_reply(client);
@@ -64,20 +64,20 @@ protected:
         replies_[client].pop_front();
         return reply;
     }
-    /// The result of a command.
+    /// Runs a command and returns its result.
     json run(const std::string& command, const json& params = json::object(), ClientId client = 1) {
         const json reply = ask(json{{"id", 1}, {"command", command}, {"params", params}}.dump(), client);
         EXPECT_EQ(reply.at("ok"), true) << command << " " << params.dump() << ": " << reply.dump();
         return reply.value("result", json());
     }
-    /// The error of a command, in one line.
+    /// Runs a command and returns its error, in one line.
     std::string error_of(const std::string& command, const json& params = json::object(), ClientId client = 1) {
         const json reply = ask(json{{"id", 1}, {"command", command}, {"params", params}}.dump(), client);
         if (reply.at("ok") == true) return "accepted";
         const json& error = reply.at("error");
         return error.at("where").get<std::string>() + ": " + error.at("why").get<std::string>();
     }
-    /// Events of this name so far; waits until there is one.
+    /// The events of this name so far; waits until there is one.
     std::vector<json> events(const std::string& name) {
         std::unique_lock lock(mutex_);
         std::vector<json> found;

@@ -23,7 +23,7 @@ TEST_F(SceneThreadTest, AFieldThatIsWrittenTwiceIsRefused) {
     EXPECT_EQ(reply.at("error").at("where"), "message, line 1, column 66: params.indices");
 }
 
-// Copying or freeing such a value walks a level of the stack for each bracket.
+// Copying or destroying such a value recurses once for each bracket.
 TEST_F(SceneThreadTest, AMillionBracketsAreRefusedAndTheServerGoesOn) {
     const std::string open(1'000'000, '['), close(1'000'000, ']');
     for (const std::string& value : {open, open + close}) {
@@ -70,12 +70,12 @@ TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreTold) {
     EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
 }
 
-// The network thread asks for these; whatever the scene thread does meanwhile, it must not wait.
+// The network thread asks for these while the scene thread is busy; it must not wait.
 TEST_F(SceneThreadTest, TheDocumentComesAfterTheCommandInHandAndNobodyWaitsForIt) {
     thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
     std::promise<scene::Document> taken;
     thread_->request_document([&](scene::Document document) { taken.set_value(std::move(document)); });
-    // Both are here at once, though the steps take some seconds.
+    // Both calls return at once, though the steps take some seconds.
     (void)thread_->frame_since(0);
     EXPECT_EQ(thread_->scene_title(), "Untitled");
     std::future<scene::Document> document = taken.get_future();

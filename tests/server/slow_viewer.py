@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A viewer that reads nothing misses frames; the server does not keep them for it, and others see all that happens.
+"""A viewer that reads nothing misses frames; the server does not keep them for it, and other viewers receive everything.
 
 Usage: slow_viewer.py EMBODY
 """
@@ -13,7 +13,7 @@ import tempfile
 from viewer import HEAD, Server, Viewer
 
 MOVES = 600
-# Grains that are carried about: each time all of them have moved, without a step of the simulation.
+# Grains that are moved by a command: each time all of them have moved, without a step of the simulation.
 SCENE = {
     "embody_scene": 1,
     "title": "Carried",
@@ -22,7 +22,7 @@ SCENE = {
 
 
 def place_of(frame: bytes) -> float:
-    """How far its first entity was carried."""
+    """The distance that its first entity was moved by."""
     return struct.unpack_from("<f", frame, HEAD.size + 4)[0] if HEAD.unpack_from(frame)[3] else 0.0
 
 
@@ -48,10 +48,10 @@ def main() -> int:
             print(f"{frames} frames, {sent / 1e6:.0f} MB to the quick viewer; the server grew by {grown / 1e6:.1f} MB with {len(slow)} that read nothing")
             if sent < 10e6:
                 wrong.append(f"only {sent} bytes were sent: this test says nothing")
-            # Of each it keeps the frame in hand; what else it grows by is not theirs.
+            # The server keeps the current frame for each viewer; other growth is not caused by them.
             if grown > 0.5 * missed:
                 wrong.append(f"the server grew by {grown} bytes while {len(slow)} viewers missed {missed} in all")
-            # Once it reads, a slow one is at the present after the few frames that were on their way.
+            # A slow viewer that starts to read receives the present state after the few frames that were being sent.
             for viewer in slow:
                 seen = []
                 while not seen or seen[-1] < MOVES:

@@ -68,7 +68,7 @@ TEST(StateFrame, AResetSendsEverything) {
     EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen).bytes, 8), 2u);
 }
 
-/// Points that stay where the test puts them.
+/// Points whose positions the test sets.
 struct SamplePoints final : scene::MovingPoints {
     std::vector<Vec3> at;
     void read(std::vector<Vec3>& positions) const override { positions = at; }
@@ -139,7 +139,7 @@ TEST(PointSets, AreSentWhereSomethingMovedAndToWhoComesLater) {
     EXPECT_EQ(board.frame_since(seen).bytes, "");
     EXPECT_EQ(read<std::uint32_t>(board.frame_since(0).bytes, 12), 1u);
 
-    // One body again.
+    // The entity is one body again.
     board.publish({entity(1, 0, 2)}, 0.5, 5, false);
     const std::string solid = board.frame_since(seen).bytes;
     EXPECT_EQ(read<std::uint32_t>(solid, 12), 0u);

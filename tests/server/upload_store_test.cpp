@@ -65,7 +65,7 @@ TEST_F(UploadStoreTest, OpeningRemovesWhatAKilledProcessLeftAndNothingElse) {
     auto kept = *living->begin("kept.glb");
     const pid_t child = fork();
     if (child == 0) {
-        // Ends like a killed process: without a destructor.
+        // Leave the store as a killed process does: without a destructor.
         const auto store = UploadStore::open(uploads());
         const bool began = store.ok() && (*store)->begin("left.glb").ok();
         static std::vector<std::shared_ptr<Upload>> leaked;

@@ -25,7 +25,7 @@ class Server:
         self.port = int(line.rsplit(":", 1)[1].strip(" /\n"))
 
     def memory(self, peak: bool = False) -> int:
-        """Resident bytes, now or at most so far."""
+        """Resident memory in bytes, now or the maximum so far."""
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return 1024 * int(next(line for line in status.splitlines() if line.startswith("VmHWM" if peak else "VmRSS")).split()[1])
 
@@ -43,7 +43,7 @@ class Server:
 
 
 class Viewer:
-    """One WebSocket. It reads only when asked to; what it is sent meanwhile waits in the system's buffers."""
+    """One WebSocket. It reads only when asked to; messages wait in the system's buffers meanwhile."""
 
     def __init__(self, port: int, buffer: int = 0):
         self.socket = socket.socket()
@@ -103,7 +103,7 @@ class Viewer:
         return self.commands
 
     def do(self, command: str, **params):
-        """A command and its result; what comes before the reply is thrown away."""
+        """Sends a command and returns its result; messages before the reply are dropped."""
         asked = self.ask(command, **params)
         while True:
             message = self.read()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What ./run and ./test ask of CMake: ./run leaves the tests out, ./test puts them in, and nothing is built twice.
+"""How ./run and ./test call CMake: ./run leaves the tests out, ./test includes them, and nothing is built twice.
 
 Usage: test_setup.py CMAKE NINJA
 """
@@ -13,7 +13,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# A cmake that notes the tests' option and leaves what a configuration leaves; it fails where FAIL says so.
+# A stand-in for cmake that records the tests' option and writes the files of a configuration; it fails where FAIL is
+# set.
 CMAKE_STAND_IN = """#!/bin/bash
 option=${!#}
 echo "${option#-DEMBODY_TESTS=}" >>"$CALLS"
@@ -33,7 +34,7 @@ class WhenCMakeIsCalled(unittest.TestCase):
         self.calls = self.folder / "calls"
 
     def configure(self, *arguments, fail=False):
-        """The tests' options of the calls of cmake that one configure_program makes."""
+        """The tests' option in each call of cmake that one configure_program makes."""
         self.calls.write_text("")
         environment = os.environ | {"PATH": f"{self.folder}:{os.environ['PATH']}", "CALLS": str(self.calls), "FAIL": "1" if fail else ""}
         ended = subprocess.run(["bash", "-u", "-c", 'root=$1; . "$2"; shift 2; configure_program release "$@"', "bash", str(self.folder),

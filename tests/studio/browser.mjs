@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A real, headless Chromium on the Studio.
+// A real, headless Chromium that shows the Studio.
 import { existsSync } from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 
-// The packages lie beside the front-end, not beside its tests.
+// The packages are installed with the front-end, not with its tests.
 const { chromium } = createRequire(fileURLToPath(new URL("../../studio/package.json", import.meta.url)))("playwright-core");
 
 const PROGRAMS = [process.env.EMBODY_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
@@ -28,7 +28,7 @@ export async function openBrowser() {
   return chromium.launch({ executablePath, args: FLAGS, headless: true });
 }
 
-/** A page on the Studio that is connected, with its models drawn. Errors of the page fail the test through `faults`. */
+/** A connected page of the Studio, with its models drawn. Errors of the page fail the test through `faults`. */
 export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {} } = {}) {
   const context = await browser.newContext({ viewport: { width, height } });
   const page = await context.newPage();
@@ -43,7 +43,7 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   return page;
 }
 
-/** A screenshot; drawing rests meanwhile, as a page that always draws may never be still. */
+/** Takes a screenshot; drawing is stopped meanwhile, because a page that always draws may never be still. */
 export async function takePicture(page, path) {
   await page.waitForTimeout(300);
   await page.evaluate(() => window.embody.halt());
@@ -51,14 +51,13 @@ export async function takePicture(page, path) {
   await page.evaluate(() => window.embody.resume());
 }
 
-/** The scene as it is drawn, without the panels. */
+/** A picture of the drawn scene, without the panels. */
 export async function pictureOfScene(page) {
-  // Without the ring around what has the keyboard.
+  // Without the ring around the focused element.
   await page.evaluate(() => document.activeElement?.blur());
   await page.waitForTimeout(500);
   await page.evaluate(() => window.embody.halt());
-  // Nor with messages that lie over it.
-  // The page's policy lets in no style element, but a sheet that a script makes.
+  // And without messages that lie over it. The page's policy allows no style element, but a sheet that a script makes.
   await page.evaluate(() => {
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(".toasts, .overlays { visibility: hidden !important; }");
@@ -70,7 +69,7 @@ export async function pictureOfScene(page) {
   return picture;
 }
 
-/** The share of pixels of two pictures of the same size that differ by more than a person may overlook. */
+/** The fraction of pixels of two pictures of the same size that differ by more than a person may overlook. */
 export function difference(page, one, other) {
   return page.evaluate(
     async (pictures) => {

@@ -27,7 +27,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     for (const other of others.splice(0)) await other.context().close();
   });
 
-  // As another client of the same server, or another program on the same database, would.
+  // Runs a command as another client of the same server, or another program on the same database, would.
   const command = (name, params) => session.command(name, params);
   function embody(...words) {
     const done = spawnSync(session.program, [...words, "--database", session.server.database], { encoding: "utf8", maxBuffer: 1 << 28 });
@@ -142,7 +142,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await row("mass").getByText("manual").waitFor({ state: "detached" });
     assert.equal((await value(await page.getByTestId("model-tile").nth(2).getAttribute("data-key"), "mass")).overridden, false);
 
-    // The name is kept in this browser.
+    // The name is stored in the browser.
     await page.reload();
     await page.waitForFunction(() => window.embody?.connected());
     await page.getByTestId("view.options").click();
@@ -196,7 +196,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await page.keyboard.press("Control+z");
     await toast(/^Took back Mass of/).waitFor();
 
-    // Of everything, what is soft or fluid has no wall.
+    // Of all models, the soft and fluid ones have no wall.
     await page.getByTestId("search").fill("");
     await page.waitForFunction(() => Number(document.querySelector("[data-testid=result-count]").textContent.replace(/\D/g, "")) > 500);
     await openApply("wall_thickness", "found");
@@ -239,7 +239,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await list.getByText("automatic → 21 kg").waitFor();
     assert.match(await list.innerText(), /command line/);
 
-    // The older one is covered by the newer.
+    // The newer batch has changed the older one's value, so the older one cannot be undone.
     const acts = list.locator("> li");
     await acts.nth(1).getByRole("button", { name: "Undo" }).click();
     await acts.nth(1).getByText(/nothing was undone: the Mass of .* was changed since/).waitFor();

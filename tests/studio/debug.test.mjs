@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the solver sees, drawn over the picture: docs/physics/debugging.md.
+// Debug drawings of the solver over the picture: docs/physics/debugging.md.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { difference, pictureOfScene } from "./browser.mjs";
@@ -47,7 +47,7 @@ describe("debug drawing in the Studio", { timeout: 300000 }, () => {
     const seen = await counts();
     assert.deepEqual(seen[CONTACT], { lines: 0, points: 8 });
     assert.deepEqual(seen[NORMAL], { lines: 8, points: 0 });
-    // Slow enough to be wanting to.
+    // The box is slow enough to want to sleep.
     assert.deepEqual(seen[WANTS_TO_SLEEP], { lines: 24, points: 0 });
     assert.equal(seen[STATIC].lines, 22);
     const share = await difference(page, plain, await pictureOfScene(page));
@@ -69,7 +69,7 @@ describe("debug drawing in the Studio", { timeout: 300000 }, () => {
     const told = page.getByTestId("debug-left-out");
     await told.waitFor();
     const edges = 2 * size * (size - 1) + (size - 1) ** 2;
-    const notDrawn = edges + 24 + 22 - 60000; // besides the two boxes' edges and the plane's grid
+    const notDrawn = edges + 24 + 22 - 60000; // besides the edges of the two boxes and the plane's grid
     assert.equal(await told.textContent(), `${notDrawn.toLocaleString("en")} lines not drawn`);
     await page.getByTestId("debug-shapes").click();
     await told.waitFor({ state: "hidden" });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Liquids in the Studio: drawn as one surface, run apart, chosen, changed, and there to add.
+// Liquids in the Studio: drawn as one surface, flowing apart, selected, changed, and offered as primitives.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { difference, openStudio, pictureOfScene } from "./browser.mjs";
@@ -35,7 +35,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
   });
 
   const command = (name, params) => session.command(name, params);
-  // Made beside the page: it comes a while after the points.
+  // The worker makes the surface, so it arrives some time after the points.
   async function surface() {
     await page.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
     return page.evaluate((water) => window.embody.points(water), WATER);
@@ -74,7 +74,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     await command("simulation.step", { count: 20 });
     await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.13, WATER);
     const drawn = await pictureOfScene(page);
-    // As who comes now sees it.
+    // Another page that connects now sees the same.
     const other = await openStudio(session.browser, session.address);
     await other.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
     const share = await difference(page, drawn, await pictureOfScene(other));
@@ -111,7 +111,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     await page.getByText(/surfaces of liquids cannot be drawn: .*out of order/).waitFor();
     const seen = await page.evaluate((water) => window.embody.seenAt(water), WATER);
     assert.equal(await page.evaluate(({ x, y }) => window.embody.pick(x, y), seen), WATER);
-    // They go on as drops, also those that come later.
+    // They are drawn as drops from now on, also liquids that are added later.
     await command("simulation.step", { count: 40 });
     await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.2, WATER);
     await page.locator("[data-testid=primitive-water]").dblclick();

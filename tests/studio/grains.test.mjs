@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Grains in the Studio: drawn as points, poured, chosen, changed, and there for who comes later.
+// Grains in the Studio: drawn as points, poured, selected, changed, and seen by pages that connect later.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { openStudio } from "./browser.mjs";
@@ -51,7 +51,7 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     assert.equal(heap.count, filled.count);
     assert.ok(heap.upper[1] < filled.upper[1]);
 
-    // Nothing moves any more, yet who comes later sees the heap.
+    // Nothing moves any more, but a page that connects later sees the heap, too.
     const later = await openStudio(session.browser, session.address);
     await later.waitForFunction((sand) => window.embody.points(sand), SAND);
     assert.deepEqual(await points(later), heap);

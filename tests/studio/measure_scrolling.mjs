@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What scrolling through the model browser costs: frame times, elements, memory. A measurement, not a test.
+// Measures scrolling through the model browser: frame times, elements, memory. This is not a test.
 // Usage (in studio/): node ../tests/studio/measure_scrolling.mjs DATABASE [PICTURE.png]
-// with EMBODY_PROGRAM naming the program; the database best one that `embody bench catalogue` has filled.
+// EMBODY_PROGRAM names the program; use a database that `embody bench catalogue` has filled.
 import { readFileSync } from "node:fs";
 import { openBrowser, openStudio, takePicture } from "./browser.mjs";
 import { findProgram, RealServer } from "./real_server.mjs";
@@ -12,10 +12,10 @@ const address = await server.start({ embody_scene: 1, title: "Empty", entities: 
 const browser = await openBrowser();
 const page = await openStudio(browser, address);
 await page.waitForSelector('[data-testid="model-tile"]');
-// The view draws at its own cost; here only the list is measured.
+// Stops the 3D view, because only the list is measured.
 await page.evaluate(() => window.embody.halt());
 
-/** Scrolls `pixels` a frame for `frames` frames. */
+/** Scrolls by `pixels` in each of `frames` frames. */
 const scroll = (pixels, frames) =>
   page.evaluate(
     ([pixels, frames]) =>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A stand-in for `embody serve` with as much of docs/protocol.md as the Studio's panels need, and as many models as a test
-// wants. What the real server decides (physics, attributes) is only pretended here; tests of that run the real one.
+// A stand-in for `embody serve` with as much of docs/protocol.md as the Studio's panels need, and as many models as a test wants.
+// Physics and attributes are only imitated here; tests of these run the real server.
 import { createReadStream, existsSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
@@ -124,7 +124,7 @@ export class MockServer {
       const begun = merge && merge === this.merge ? this.past.pop() : null;
       this.merge = merge;
       this.edit("move", () => poses.forEach(({ index, ...pose }) => Object.assign(this.entity(index).pose, pose)));
-      // One drag is one step: it goes back to where its first message began.
+      // One drag is one undo step: undo goes back to the state before the first message of the drag.
       if (begun) this.past[this.past.length - 1] = begun;
     },
     "entity.update": ({ index, entity }) => this.edit("change", () => Object.assign(this.entity(index), entity)),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Models made here, as tests need them.
+// Generated models for tests.
 
-/** A picture of one point, PNG. */
+/** A PNG picture of one pixel. */
 export const PIXEL = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGPY0ODwHwAFxAJwjEci1QAAAABJRU5ErkJggg==", "base64");
 
-/** A glTF binary of a box of half a metre that stands on its origin; with a texture where that is asked for. */
+/** A binary glTF of a box of 0.5 m with its origin in its base; with a texture if asked for. */
 export function boxGlb({ textured = false } = {}) {
   const corners = [], places = [];
   for (const x of [-0.25, 0.25]) for (const y of [0, 0.5]) for (const z of [-0.25, 0.25]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the panels do with the protocol, against a stand-in for the server: fast, and with as many models as one likes.
+// How the panels use the protocol, against a stand-in for the server: fast, and with any number of models.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { openBrowser, openStudio } from "./browser.mjs";
@@ -87,7 +87,7 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await page.waitForFunction(() => document.querySelector("[data-testid=attribute-mass] input")?.placeholder === "differs");
     await field("mass").fill("9");
     await field("mass").press("Enter");
-    // The ball's mass could be reset before, so only the answer tells that both have the new one.
+    // The ball's mass could be reset before, so only the answer shows that both balls have the new one.
     await page.waitForFunction(() => document.querySelector("[data-testid=attribute-mass] input")?.placeholder !== "differs");
     assert.deepEqual(sent("entity.set_attribute").at(-1), { indices: [CRATE, 3], name: "mass", value: 9 });
     await page.getByTestId("reset-mass").click();
@@ -98,7 +98,7 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await choose(CRATE);
     await page.getByTestId("tool.move").click();
     const before = await page.evaluate((index) => window.embody.seenAt(index), CRATE);
-    // The middle handle moves in the plane of the picture.
+    // The middle handle moves the entity in the plane of the picture.
     await page.mouse.move(before.x, before.y);
     await page.mouse.down();
     for (let step = 1; step <= 8; ++step) await page.mouse.move(before.x + 10 * step, before.y - 2 * step);
@@ -135,7 +135,7 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await mock.stop();
     await page.getByTestId("connection-lost").waitFor();
     assert.equal(await page.getByTestId("connection").innerText(), "Not connected");
-    // A click meanwhile is not lost silently.
+    // A click during this time is not lost without a message.
     await page.getByTestId("simulation.play").click();
     await page.getByText("Not connected to the server").waitFor();
     mock = new MockServer({ models: 8, port: mock.port });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the server lets a browser do with its pages (docs/protocol.md, "Who is answered"): the Studio runs under its own
-// strict policy without a single violation, and pages of other sites get nothing.
+// What the server allows a browser to do with its pages (docs/protocol.md, "Who is answered"): the Studio runs under its own strict
+// policy without a violation, and pages of other sites receive nothing.
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { after, before, describe, it } from "node:test";
@@ -8,7 +8,7 @@ import { openBrowser, openStudio } from "./browser.mjs";
 import { boxGlb } from "./models.mjs";
 import { findProgram, RealServer } from "./real_server.mjs";
 
-// Each kind is drawn in its own way: instances, the surface of a liquid by a worker, cloth.
+// Each kind is drawn by other code: instances, the surface of a liquid by a worker, cloth.
 const SCENE = {
   embody_scene: 1,
   title: "Policy",
@@ -55,7 +55,7 @@ describe("the server's policy for browsers", { timeout: 300000 }, () => {
     await page.waitForTimeout(2000);
     assert.deepEqual(await page.evaluate(() => window.violations), []);
     assert.deepEqual(page.faults, []);
-    // The policy is in force: what the Studio does not do is refused.
+    // The policy is in force: other actions than the Studio's are refused.
     const refused = await page.evaluate(() => {
       const script = document.createElement("script");
       script.textContent = "window.intruded = true";
@@ -94,7 +94,7 @@ describe("the server's policy for browsers", { timeout: 300000 }, () => {
     }, address);
     assert.deepEqual(got, { width: 0, opened: false, fetched: false });
     assert.ok(answers.every((status) => status === 403), `answered ${answers}`);
-    // But a link may lead there.
+    // But a link of another site may lead there.
     await page.evaluate((embody) => (location.href = embody), address);
     await page.waitForFunction(() => window.embody?.connected(), null, { timeout: 60000 });
     await page.context().close();

@@ -20,8 +20,8 @@ export function findProgram() {
 }
 
 /**
- * The file of a database with the furniture catalogues in it: $EMBODY_TEST_DATABASE as it is, or one in the build folder that
- * the first run fills. Importing goes on where it stopped, so later runs cost little.
+ * The file of a database with the furniture catalogues: $EMBODY_TEST_DATABASE unchanged, or one in the build folder that the
+ * first run fills. An import continues where it stopped, so later runs take little time.
  */
 export function prepareDatabase(program) {
   if (process.env.EMBODY_TEST_DATABASE) return process.env.EMBODY_TEST_DATABASE;
@@ -31,7 +31,7 @@ export function prepareDatabase(program) {
   const catalogues = existsSync(CATALOGUES) ? readdirSync(CATALOGUES).map((name) => join(CATALOGUES, name)) : [];
   if (catalogues.length === 0) throw new Error("no furniture catalogues: install the package sweethome3d-furniture");
   const done = spawnSync(program, ["import", "--database", file, ...catalogues], { encoding: "utf8" });
-  // Single pieces may be unreadable; what counts is that there is a catalogue.
+  // Single models may be unreadable; only the database must exist.
   if (!existsSync(file)) throw new Error(`embody import failed: ${done.stderr || done.stdout}`);
   return file;
 }
@@ -41,12 +41,12 @@ export class RealServer {
   constructor(program, database) {
     this.program = program;
     this.home = mkdtempSync(join(tmpdir(), "embody-studio-"));
-    // Tests import and change models: in a copy, with what is still in the write-ahead log.
+    // Tests import and change models, so they work on a copy, including the write-ahead log.
     this.database = join(this.home, "models.sqlite");
     for (const suffix of ["", "-wal"]) if (existsSync(database + suffix)) copyFileSync(database + suffix, this.database + suffix);
   }
 
-  /** Starts it on a scene (the document itself); resolves with its address. A second start takes the same port again. */
+  /** Starts the server with a scene (the document itself); resolves with its address. A second start uses the same port. */
   async start(scene) {
     const file = join(this.home, "first.json");
     writeFileSync(file, JSON.stringify(scene));

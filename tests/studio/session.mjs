@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a suite of tests works with: the real program on the real database, a browser, and a page on the Studio.
+// What a suite of tests needs: the real program on the real database, a browser, and a page of the Studio.
 import assert from "node:assert/strict";
 import { openBrowser, openStudio } from "./browser.mjs";
 import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
 
-/** Does a command of docs/protocol.md as another client of the page's server would; its result, or an error with the refusal. */
+/** Runs a command of docs/protocol.md as another client of the page's server; returns its result, or an error with the refusal. */
 export function commandFrom(page, name, params = {}) {
   return page.evaluate(
     async ([command, params]) => {
@@ -26,7 +26,7 @@ export function commandFrom(page, name, params = {}) {
 export class Session {
   page = null;
 
-  /** Starts the program on a scene (the document itself). */
+  /** Starts the program with a scene (the document itself). */
   async start(scene) {
     this.program = findProgram();
     assert.ok(this.program, "the program embody is not built: build it, or set EMBODY_PROGRAM");

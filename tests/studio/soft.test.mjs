@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Soft things in the Studio: their own form bends with the nodes, and the property panel changes their kind while they move.
+// Soft bodies in the Studio: the drawn form bends with the nodes, and the property panel changes their kind while they move.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { Session } from "./session.mjs";
@@ -38,7 +38,7 @@ describe("soft things in the Studio", { timeout: 600000 }, () => {
   const bent = (index) => page.evaluate((index) => window.embody.bent(index), index);
 
   it("draws them at rest exactly as they are", async () => {
-    // Quantised nodes are a few micrometres off; what the mesh misses is carried along.
+    // Quantised nodes are a few micrometres off; vertices outside of the tetrahedra are carried, too.
     const { size, vertices } = await bent(2);
     [0.4, 0.2, 0.4].forEach((extent, axis) => assert.ok(Math.abs(size[axis] - extent) < 1e-3, `${size}`));
     assert.ok(vertices > 100, "twelve triangles were made finer, so that they can bend");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Studio as a user meets it: the real server, the real furniture catalogue, a real browser.
+// The Studio as a user sees it: the real server, the real furniture catalogue, a real browser.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { Session } from "./session.mjs";
@@ -68,8 +68,8 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     const chair = await dragIn(page.getByTestId("model-tile").first());
     assert.ok(chair.model, "the entity names its model");
     assert.deepEqual(await chosen(), [chair.index]);
-    // It stands on the floor where it was dropped; held up, it has something to fall. From half a metre every second chair bounces
-    // from leg to leg and topples, as its wood's restitution has it.
+    // The chair stands on the floor where it was dropped; lift it, so that it falls. From 0.5 m every second chair bounces from leg
+    // to leg and topples, by the restitution of its wood.
     await page.getByLabel("Position y").fill("0.15");
     await page.getByLabel("Position y").press("Enter");
     await page.waitForFunction(() => Math.abs(window.embody.entities().at(-1).position[1] - 0.15) < 0.01);
@@ -82,7 +82,7 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     const rotation = resting.rotation.map((part) => Math.abs(part));
     assert.ok(Math.abs(rotation[3] - 1) < 0.2 || rotation[1] > 0.5, "it stands upright");
 
-    // Gray in the picture: red, green and blue of the chair's pixels lie close together.
+    // Gray in the picture: red, green and blue of the chair's pixels are nearly equal.
     await page.waitForFunction(() => document.querySelector("[data-testid=stat-asleep]").textContent.startsWith("1 "));
     assert.ok(await page.getByTestId("legend").isVisible());
     const [red, green, blue] = await page.evaluate(() => window.embody.tintOf(window.embody.entities().at(-1).index));

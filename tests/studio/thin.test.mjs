@@ -48,7 +48,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     const cloth = await bent(2);
     [0.8, 0.004, 0.8].forEach((extent, axis) => assert.ok(Math.abs(cloth.size[axis] - extent) < 1e-3, `${cloth.size}`));
     assert.ok(Math.abs(cloth.normals - 1) < 1e-3);
-    // Its axis is the frame's Y; the sag of a rope that is longer by s is d √(3s/8), its own thickness around that.
+    // The rope's axis is the frame's Y; the sag of a rope that is longer by a fraction s is d √(3s/8), plus its thickness.
     const rope = await bent(3);
     assert.ok(rope.size[1] > 1.2 && rope.size[1] < 1.26, `${rope.size}`);
     const sag = 1.2 * Math.sqrt((3 * 0.1) / 8);
@@ -76,7 +76,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     assert.ok((await lowest()) > still + 0.05, `it is blown: ${await lowest()}`);
     const { normals } = await bent(2);
     assert.ok(Math.abs(normals - 1) < 1e-3, "normals have length one");
-    // What is active keeps its own colour, but for a glimmer; all over only where a person wants it so.
+    // An active entity keeps its own colour, but for a faint tint; the full tint is an option.
     const covered = () => page.evaluate(() => window.embody.tintOf(2)[3]);
     assert.ok((await covered()) > 0 && (await covered()) < 0.2, `${await covered()}`);
     await page.evaluate(() => document.querySelector("[data-testid=canvas]").focus());
@@ -90,9 +90,9 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
   });
 
   it("says that a rope broke and draws it in two", async () => {
-    // Its ends bear 15 N, so the middle comes loose and falls.
+    // The rope's ends carry 15 N, so it breaks there and its middle falls.
     await send("entity.set_attribute", { indices: [3], name: "break_tension", value: 14 });
-    // Looked at all the while: a form that was just made, too, has normals of length one before it first bends.
+    // Watched all the time: a form that was just made has normals of length one, too, before it first bends.
     await page.evaluate(() => {
       window.lengths = [];
       const look = () => {
@@ -110,7 +110,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     lengths.push((await bent(3)).normals);
     for (const length of lengths) assert.ok(length === null || Math.abs(length - 1) < 1e-3, `${length}`);
     assert.deepEqual(page.faults, []);
-    // Broken everywhere there is nothing left to draw.
+    // A rope that is broken everywhere has nothing to draw.
     await send("entity.set_attribute", { indices: [3], name: "break_tension", value: 0 });
     await send("simulation.step", { count: 60 });
     await page.waitForFunction(() => window.embody.simulation().step === 420 && window.embody.bent(3) !== null);
@@ -120,7 +120,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
   });
 
   it("begins with fast drawing where there is no graphics card, and what stands still is drawn finely", async () => {
-    // Nobody says how it shall be drawn.
+    // A page without a choice of quality.
     const other = await openStudio(session.browser, session.address, { quality: "" });
     const software = await other.evaluate(() => {
       const gl = document.createElement("canvas").getContext("webgl2");
@@ -155,7 +155,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await send("simulation.step", { count: 60 });
     await page.waitForFunction(() => window.embody.simulation().step === 61);
     const drawn = await pictureOfScene(page);
-    // As who comes now sees it.
+    // Another page that connects now sees the same.
     const other = await openStudio(session.browser, session.address);
     await other.waitForFunction(() => window.embody.bent(2) !== null && window.embody.bent(3) !== null);
     const share = await difference(page, drawn, await pictureOfScene(other));
@@ -188,7 +188,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
         return data;
       }, text.replace("4711", number));
       await page.dispatchEvent("#scene", "drop", { dataTransfer: drop, clientX: 500, clientY: 400 });
-      // The scene was changed, so that it is asked for first.
+      // The scene has unsaved changes, so the Studio asks first.
       await page.getByTestId("discard").click();
       await page.getByText(said).waitFor({ timeout: 20000 });
     }
@@ -215,7 +215,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await says("1 place is held");
     await page.getByTestId("pin-holder").selectOption({ label: "Floor" });
     await page.waitForFunction(() => document.querySelector("[data-testid=pin-holder]").value === "1");
-    // Held by its middle alone it hangs down around that, while it plays, too.
+    // Held by its middle alone the cloth hangs down around it, also while the simulation plays.
     await send("simulation.step", { count: 60 });
     await page.waitForFunction(() => window.embody.bent(2).size[1] > 0.15);
     await page.getByTestId("pin-corners").click();

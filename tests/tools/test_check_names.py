@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""check_names.py finds two types of one name wherever they stand below src, and lets others be."""
+"""check_names.py finds two types with the same name anywhere below src, and reports nothing else."""
 import pathlib
 import subprocess
 import sys
@@ -64,7 +64,7 @@ class CheckNames(unittest.TestCase):
                 self.expect_right(plain, other)
 
     def test_each_type_of_a_file_of_ours(self) -> None:
-        """A class of the real sources, once more elsewhere."""
+        """A copy of a class of the real sources in another file."""
         source = (ROOT / "src/physics/linear/block6.h").read_text()
         result = check({"a.h": source, "b.h": source})
         for name in ("Vec6", "Block6"):

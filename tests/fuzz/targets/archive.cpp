@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Zip archives, and the list of pieces of a Sweet Home 3D catalogue in them.
+// Zip archives, and the catalogue of a Sweet Home 3D library in them.
 #include "interchange/archive/archive.h"
 
 #include <zlib.h>
@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
 }
 
-/// The checksums of members that are stored as they are, and where the list begins.
+/// Corrects the checksums of stored members and the offset of the central directory.
 extern "C" std::size_t embody_fuzz_repair(std::uint8_t* data, std::size_t size, std::size_t /*capacity*/) {
     const std::span bytes(data, size);
     std::size_t list = size;

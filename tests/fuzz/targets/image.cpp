@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::span bytes(data, size);
     const auto header = interchange::read_image_header(bytes);
     if (!header) fuzz::require(!header.error().why.empty(), "a refusal says the reason");
-    // Large ones are slow, and nothing in them is different.
+    // Large images are slow and test nothing more.
     if (header && std::int64_t{header->width} * header->height > 4'000'000 && header->width < 60'000) return 0;
     const auto image = interchange::decode_image(bytes);
     if (!image) {
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
 }
 
-/// The checksums of a PNG's chunks.
+/// Corrects the checksums of a PNG's chunks.
 extern "C" std::size_t embody_fuzz_repair(std::uint8_t* data, std::size_t size, std::size_t /*capacity*/) {
     if (size < 8 || std::memcmp(data, "\x89PNG", 4) != 0) return size;
     for (std::size_t at = 8; at + 12 <= size;) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Models whose file has no lengths to set right; CMake names the format.
+// Models in formats without lengths to correct; CMake defines the format.
 #include "../model_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

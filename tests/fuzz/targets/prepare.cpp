@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All that a worker does with a model, of a PLY file: placing, surfaces, measures, hull, convex parts, the stored form,
+// All that a worker does with a model, here a PLY file: pose, surfaces, measures, hull, convex parts, the stored form,
 // the picture.
 #include "catalog/prepare/prepare.h"
 

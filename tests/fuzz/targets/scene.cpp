@@ -19,11 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const auto document = scene::document_from_json(*json);
     if (!document) {
-        // As load_document() tells it.
+        // The error as load_document() reports it.
         fuzz::require_reasons(scene::in_place("scene", document.error()));
         return 0;
     }
-    // What was read can be saved, and read again as the same.
+    // A scene that was read can be saved, and read again as the same.
     const std::string saved = scene::print_json(scene::document_to_json(*document));
     const auto parsed = scene::parse_json(saved, "saved scene");
     fuzz::require(parsed.ok(), "a saved scene is JSON");

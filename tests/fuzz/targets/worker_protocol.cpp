@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a worker that was taken over may answer. The first byte chooses: a payload of each kind, or whole frames.
+// Possible answers of a hijacked worker. The first byte chooses: a payload of each kind, or whole frames.
 #include "catalog/prepare/worker_protocol.h"
 
 #include <cmath>
@@ -32,7 +32,7 @@ void read_item_payload(std::span<const std::uint8_t> payload) {
     fuzz::require(again.ok() && catalog::to_bytes(*again) == bytes, "what was read can be written and read again");
 }
 
-/// As the parent takes them from a pipe.
+/// Reads frames as the parent does from a pipe.
 void read_frames(std::span<const std::uint8_t> bytes) {
     while (bytes.size() >= catalog::frame_header_size) {
         const auto header = catalog::read_frame_header(bytes);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Calls of a world in any order, with good and bad values and with handles that are stale or were never given: what is
-// refused says where and why and changes nothing, and after each step the state is valid and all that the face tells is
-// finite. Half of the inputs run again with another width of the solver, which must come to the same bits.
+// Calls of a world in any order, with valid and invalid values and with handles that are stale or were never issued: a
+// refusal says where and why and changes nothing, and after each step the state is valid and all results of the
+// interface are finite. Half of the inputs run again with another width of the solver, which must compute the same
+// bits.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -21,15 +22,15 @@ using fuzz::require;
 
 namespace {
 
-// So that an input takes milliseconds.
+// Limits by which an input takes milliseconds.
 constexpr std::size_t most_bodies = 24, most_deformables = 3, most_fluids = 2, most_joints = 12, most_steps = 60;
 
-/// Handles that were given, stale ones too.
+/// Handles that were issued, stale ones too.
 template <class Handle>
 class Handles {
 public:
     void add(Handle handle) { given_.push_back(handle); }
-    /// Mostly one that was given; else null, or one that never was.
+    /// Mostly a handle that was issued; else null, or one that never was.
     Handle pick(ByteReader& bytes) const {
         const std::uint8_t chosen = bytes.byte();
         if (chosen >= 250 || given_.empty()) return chosen % 2 == 0 ? Handle{} : Handle{chosen, 77};
@@ -50,7 +51,7 @@ private:
     std::vector<Vec3> ends_;
 };
 
-/// One world, and the calls that bytes make of it.
+/// One world, and the calls that the bytes choose.
 class Calls {
 public:
     Calls(ByteReader bytes, const WorldSettings& settings) : bytes_(bytes) {
@@ -61,7 +62,7 @@ public:
 
     std::uint64_t run() {
         while (!bytes_.is_at_end() && steps_ < most_steps) call();
-        // Whatever was done, everything can be taken away again.
+        // After any calls everything can be destroyed.
         for (const FluidHandle fluid : world_->fluids()) require(world_->destroy_fluid(fluid).ok(), "fluids can go");
         for (const DeformableHandle deformable : world_->deformables())
             require(world_->destroy_deformable(deformable).ok(), "deformables can go");
@@ -103,7 +104,7 @@ private:
         (this->*calls[bytes_.below(calls.size())])();
     }
 
-    // A call that may be refused.
+    // Runs a call that may be refused.
     template <class Action>
     auto allow(const Action& action) {
         const std::uint64_t before = fuzz::fingerprint(*world_);
@@ -140,7 +141,7 @@ private:
         const BodyDefinition body = read_body();
         if (world_->bodies().size() < most_bodies) allow_new(bodies_, [&] { return world_->create_body(body); });
     }
-    // Ground, and a column of bodies on it: what random calls seldom come to.
+    // Ground and a column of bodies on it: random calls seldom build one.
     void stand_on_ground() {
         const auto ground = world_->create_shape(PlaneShape{});
         if (world_->bodies().size() + 4 > most_bodies) return;
@@ -194,7 +195,7 @@ private:
     std::vector<BodyHandle> pick_bodies() {
         std::vector<BodyHandle> picked;
         for (std::size_t times = bytes_.below(5); times > 0; --times) picked.push_back(bodies_.pick(bytes_));
-        // Each is to be named once.
+        // Each body may be named only once.
         std::ranges::sort(picked);
         const auto twice = std::ranges::unique(picked);
         picked.erase(twice.begin(), twice.end());
@@ -333,7 +334,7 @@ private:
         world_->keep_account(bytes_.is_one_of(2));
     }
 
-    // Queries change nothing, and what they find is finite.
+    // Queries change nothing, and their results are finite.
     void ask() {
         const std::uint64_t before = fuzz::fingerprint(*world_);
         const Vec3 from = bytes_.vector(-3, 3), along = bytes_.vector(-1, 1);
@@ -371,7 +372,7 @@ private:
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    constexpr std::size_t longest = 2000;  // bytes, so that an input takes less than a second
+    constexpr std::size_t longest = 2000;  // bytes; an input of this length takes less than a second
     ByteReader bytes({data, std::min(size, longest)});
     const bool twice = bytes.is_one_of(2);
     const std::uint64_t end = Calls(bytes, {.lanes = 4}).run();

@@ -10,7 +10,7 @@
 
 namespace embody::fuzz {
 
-/// Bytes as choices and numbers. Behind the end all of them are zero, and zero stands for what is usual: the first
+/// Reads bytes as choices and numbers. After the end all bytes are zero, and zero means the usual value: the first
 /// choice, the lowest number.
 class ByteReader {
 public:
@@ -21,10 +21,10 @@ public:
     std::uint8_t byte() { return is_at_end() ? std::uint8_t{0} : bytes_[at_++]; }
     /// 0 … count - 1; 1 <= count <= 256.
     std::size_t below(std::size_t count) { return byte() % count; }
-    /// One time of `times`.
+    /// True with probability 1 / `times`.
     bool is_one_of(std::size_t times) { return below(times) == times - 1; }
 
-    /// Most bytes are a number from `lowest` to `highest`, and one in 16 is one that programs stumble over.
+    /// For most bytes a number from `lowest` to `highest`; one byte in 16 yields a number that often causes errors.
     double number(double lowest, double highest) {
         const std::uint8_t chosen = byte();
         if (chosen >= first_odd) return odd_numbers[chosen - first_odd];

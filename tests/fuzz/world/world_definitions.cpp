@@ -46,7 +46,7 @@ MeshShape read_mesh(ByteReader& bytes) {
     return mesh;
 }
 
-// All shapes that may be a child of a compound.
+// All shapes that can be a child of a compound.
 template <class Shape>
 Shape read_convex(ByteReader& bytes) {
     const auto size = [&] { return bytes.number(small, large); };
@@ -256,7 +256,7 @@ void change_deformable_field(ByteReader& bytes, DeformableDefinition& deformable
             deformable.collision_mask = bytes.byte();
             break;
         default:
-            // Seldom, as nearly all such damage is refused.
+            // Rarely, because nearly all such changes are refused.
             if (bytes.is_one_of(4)) deformable.nodes[bytes.below(nodes)] = bytes.vector(-1, 1);
     }
 }
@@ -297,7 +297,7 @@ void change_joint_field(ByteReader& bytes, JointDefinition& joint) {
     }
 }
 
-// Particles that boxes and hulls would have, if they did not overlap.
+// Number of particles of the boxes and hulls, if they did not overlap.
 double particles_of(const FluidDefinition& fluid) {
     double volume = 0;
     const auto add = [&](const Bounds& box) {

@@ -12,7 +12,7 @@
 
 namespace embody::physics {
 
-// World keeps its state to itself. An explicit instantiation may name what is private, and hands it on by a friend.
+// World::state is private. An explicit instantiation may name private members, and passes this one on by a friend.
 const state::WorldState& state_of(const World& world);
 template <std::unique_ptr<state::WorldState> World::*member>
 struct OpenedWorld {
@@ -47,7 +47,7 @@ void require_sound_bodies(const World& world) {
         const std::optional<JointDefinition> definition = world.joint(joint);
         require(definition && world.contains(definition->body_b), "a joint holds a body");
         require(std::isfinite(world.joint_coordinate(joint)), "coordinates of joints are finite");
-        // That of a body which was frozen keeps what froze it.
+        // The reaction of a joint at a disabled body stays what it was, which may be infinite.
         const bool is_solved = world.body(definition->body_b)->enabled &&
                                (definition->body_a.is_null() ||
                                 (world.contains(definition->body_a) && world.body(definition->body_a)->enabled));
@@ -85,7 +85,7 @@ void require_sound_report(const World& world) {
         require(world.contains(contact.a) && world.contains(contact.b), "contacts are of bodies");
         require(is_finite(contact.position) && is_finite(contact.impulse) && std::isfinite(contact.separation),
                 "contacts are finite");
-        constexpr double tolerance = 1e-4;  // of normals in floats
+        constexpr double tolerance = 1e-4;  // of normals, which are stored as floats
         require(std::fabs(length(contact.normal) - 1) < tolerance, "normals have length one");
     }
     for (const ContactEvent& event : world.contact_events()) {

@@ -7,11 +7,11 @@
 
 namespace embody::fuzz {
 
-/// Bits of all that a refused call must leave as it was.
+/// Hash of everything that a refused call must leave unchanged.
 std::uint64_t fingerprint(const physics::World& world);
 
-/// What holds after every step: the state's own invariants (state::validate), finite numbers in all that the face
-/// tells, and what it tells agrees. Ends the process where it does not.
+/// Checks what holds after every step: the state's own invariants (state::validate), and results of the interface that
+/// are finite and agree with each other. Ends the process where one does not hold.
 void require_sound(const physics::World& world);
 
 }  // namespace embody::fuzz
