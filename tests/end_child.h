@@ -9,7 +9,7 @@ extern "C" void __gcov_dump();
 
 namespace embody::test {
 
-/// Ends a process that a test has forked, without what the test's own end would do. What it ran counts as covered.
+/// Ends a process that a test has forked, without the cleanup of the test's own end. Its coverage is recorded.
 [[noreturn]] inline void end_child(int code) {
 #if defined(EMBODY_COVERAGE)
     __gcov_dump();

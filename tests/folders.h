@@ -5,12 +5,12 @@
 
 namespace embody {
 
-// Where tests find files. Only folders.cpp knows these paths when it is compiled, so that other folders with the same
-// sources share what a compiler cache has of all other tests.
+// Folders with the tests' files. Only folders.cpp contains these paths, so that a compiler cache serves all other tests
+// in other folders with the same sources.
 
 /// The project's folder.
 std::filesystem::path source_folder();
-/// The folder that it is built in.
+/// The build folder.
 std::filesystem::path build_folder();
 
 }  // namespace embody

@@ -11,8 +11,8 @@
 
 namespace embody::physics {
 
-/// A world of valid settings. EMBODY_SETTING changes one number of its solvers: so tools/try_settings.py finds out
-/// which tests notice it.
+/// A world with valid settings. EMBODY_SETTING changes one number of its solvers: tools/try_settings.py uses it to find
+/// out which tests detect the change.
 inline std::unique_ptr<World> make_world(WorldSettings settings = {}) {
     if (const char* wish = std::getenv("EMBODY_SETTING")) {
         const std::string text = wish;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fails where a command of a session is not in docs/protocol.md, or one there or in the Studio's types is no command.
+"""Fails where a command of a session is not in docs/protocol.md, or where that file or the Studio's types name a command that does not exist.
 
 Commands are the rows {"family.verb", function} in src/scene/session/commands and src/server.
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fails where a C++ source is not as clang-format (with .clang-format) would write it.
+"""Fails where clang-format (with .clang-format) would change a C++ source.
 
 Usage: check_format.py [CLANG_FORMAT]
 """

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fails where a file names what none of the headers that it includes declares.
+"""Fails where a file uses a name that none of its included headers declares.
 
 Usage: check_includes.py [ROOT]   (default: the folder above this file)
-Sources that are compiled together (cmake/unity.cmake) see what the ones before them include, so the compiler does not tell. Looked at are
-types and functions that headers declare at namespace scope, where other files of the folder reach those, and the usual names of the standard library. It reads text, not
-C++: what it finds is wrong, what it does not find the preset `dev` may, which compiles each file alone.
+Sources that are compiled together (cmake/unity.cmake) see the includes of the ones before them, so the compiler does not find the error.
+The check covers types and functions that headers declare at namespace scope, where other files of the folder include these headers, and
+the usual names of the standard library. It reads text, not C++: a reported line is wrong, but some errors are found only by the preset
+`dev`, which compiles each file alone.
 """
 import pathlib
 import re
@@ -29,7 +30,7 @@ STANDARD = {
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.MULTILINE)
 # A free function at namespace scope begins its line, or follows its attributes and type on it.
 FUNCTION = re.compile(r"^(?!\s|return\b|using\b|#|//|namespace\b|struct\b|class\b|enum\b|template\b|typedef\b|public:|private:)[\w:<>,&*\[\] ]*?[\w>&*\]] [&*]?([a-z]\w*)\(", re.MULTILINE)
-# Not of a member or a namespace, and no declaration, which has a type before it.
+# A call, but not of a member or of a name with a namespace, and no declaration, which has a type before the name.
 CALL = re.compile(r"(?:[;{}(,=!?+/|<-]|&&|\breturn|\belse)\s*\b([a-z]\w*)\(")
 
 
@@ -41,7 +42,7 @@ def main() -> int:
             if path.suffix in (".h", ".cpp"):
                 name = path.relative_to(base).as_posix()
                 text[name] = path.read_text()
-                # Without comments and what is quoted.
+                # The text without comments and strings.
                 code[name] = TOKEN.sub(lambda t: t.group(0) if t.group(0)[0] not in "\"'/#R" or t.group(0)[:2] not in ("//", "/*", 'R"')
                                        and t.group(0)[0] not in "\"'#" else " ", text[name])
                 words[name] = set(re.findall(r"\w+", code[name]))
@@ -55,13 +56,13 @@ def main() -> int:
                 seen.add(other)
                 closure(other, seen, standard)
 
-    declared = {}  # a name and the headers that declare it
+    declared = {}  # header files by the name that they declare
     for name, its in code.items():
         if name.endswith(".h"):
             for found in {n.split("::")[-1] for n in definitions(text[name])} | set(FUNCTION.findall(its)):
                 declared.setdefault(found, set()).add(name)
 
-    reached, standard_of, near = {}, {}, {}  # by a file, and by all of its folder
+    reached, standard_of, near = {}, {}, {}  # headers that a file includes, and those that any file of its folder includes
     for name in text:
         reached[name], standard_of[name] = {name}, set()
         closure(name, reached[name], standard_of[name])
@@ -71,7 +72,7 @@ def main() -> int:
     for name in sorted(text):
         seen, standard = reached[name], standard_of[name]
         known = set().union(*(words[other] for other in seen if other != name))
-        # What the file declares itself, or has as a variable, is its own.
+        # Names that the file declares itself, types or variables.
         own = set(re.findall(r"(?:struct|class|enum|auto|using|auto&|auto\*)\s+(\w+)", code[name])) | set(FUNCTION.findall(code[name]))
         named = set(re.findall(r"(?<![\w.>])([A-Z]\w*[a-z]\w*)\b", code[name])) | set(CALL.findall(code[name]))
         for found in sorted(named & declared.keys()):

@@ -25,7 +25,7 @@ def read_table(architecture: pathlib.Path) -> dict[str, set[str]]:
 
 
 def read_few(architecture: pathlib.Path) -> dict[str, set[str]]:
-    """Rows `| `file` | only `layer`, `file` |` of the same section: headers that not all of their layer's readers may see."""
+    """Rows `| `file` | only `layer`, `file` |` of the same section: headers that only some of their layer's readers may include."""
     section = architecture.read_text().split("## Who may include whom", 1)[1].split("\n## ", 1)[0]
     rows = re.findall(r"^\| `([^`]+\.h)` \| only (.*) \|$", section, re.MULTILINE)
     return {header: set(re.findall(r"`([^`]+)`", readers)) for header, readers in rows}

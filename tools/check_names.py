@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fails where two classes have one name: the linker would merge them in silence (one definition rule).
+"""Fails where two classes have the same name: the linker would merge them without an error (one definition rule).
 
 Usage: check_names.py [ROOT]   (default: the folder above this file)
-Looks at all classes, structs, unions and enumerations at namespace scope below src/ that are not in an unnamed namespace. Types inside others
-are named by them.
+Checks all classes, structs, unions and enumerations at namespace scope below src/ that are not in an unnamed namespace. A nested type has
+the outer one in its name.
 """
 import pathlib
 import re
@@ -15,7 +15,7 @@ KINDS = {"class", "struct", "union", "enum"}
 
 
 def without_template_and_alignment(head: list[str]) -> list[str]:
-    """The declaration without "template <…>" and "alignas(…)", whose own signs would hide that it is of a type."""
+    """The declaration without "template <…>" and "alignas(…)", whose punctuation would hide that it declares a type."""
     kept, i = [], 0
     while i < len(head):
         opening, closing = ("<", ">") if head[i] == "template" else ("(", ")")
@@ -33,8 +33,8 @@ def without_template_and_alignment(head: list[str]) -> list[str]:
 def definitions(text: str):
     """Qualified names of the types that the text defines at namespace scope."""
     tokens = [t.group(0) for t in TOKEN.finditer(text) if t.group(0)[0] not in "#\"'" and t.group(0)[:2] not in ("//", "/*", 'R"', "[[")]
-    scopes = []          # of each open brace: a namespace's name, "" for an unnamed one, None for anything else
-    start = 0            # of the declaration at work
+    scopes = []          # of each open brace: a namespace's name, "" for an unnamed one, None for any other brace
+    start = 0            # start of the current declaration
     for i, token in enumerate(tokens):
         if token == ";":
             start = i + 1
@@ -52,7 +52,7 @@ def definitions(text: str):
                 places = [k for k, t in enumerate(head) if t in KINDS]
                 # "template <class T> struct X" defines X, "struct X::Y" a member of X; a specialisation is named by its arguments.
                 rest = [t for t in head[places[-1] + 1:] if t != "final"] if places else []
-                rest = rest[:rest.index(":")] if ":" in rest else rest      # without what it derives from
+                rest = rest[:rest.index(":")] if ":" in rest else rest      # without its base classes
                 name = rest[:1]
                 while len(rest) > len(name) + 1 and rest[len(name)] == "::":
                     name = rest[:len(name) + 2]

@@ -4,10 +4,10 @@
 
 Usage: check_packages.py BUILD_FOLDER TARGET…
 
-What Ninja notes of the targets (inputs, headers of each object, link lines) must belong to packages that apt would install for the
-groups `build` and `run` of packages.txt where nothing is installed. Those with a `?command` do not count: where the command comes
-from elsewhere they are not installed, and npm alone would bring libssl-dev. A package of the group `optional`, and what that
-directly depends on, may be used besides. Exit status 77: cannot be told here (no dpkg or apt, or apt has no lists).
+The files that Ninja records for the targets (inputs, headers of each object, link lines) must belong to packages that apt would install
+for the groups `build` and `run` of packages.txt on an empty system. Packages with a `?command` do not count: they are not installed where
+the command comes from elsewhere, and npm alone would install libssl-dev. Packages of the group `optional`, and those that they directly
+depend on, may be used, too. Exit status 77: unknown on this machine (no dpkg or apt, or apt has no lists).
 """
 import pathlib
 import re
@@ -20,7 +20,7 @@ EXIT_SKIPPED = 77
 
 
 class CannotTell(Exception):
-    """This machine does not know what is asked; no fault of packages.txt."""
+    """This machine cannot answer the question; packages.txt is not at fault."""
 
 
 def output_of(*command: str) -> str:
@@ -28,7 +28,7 @@ def output_of(*command: str) -> str:
 
 
 def packages_of(*groups: str) -> list[str]:
-    """Names below the [group] lines, but for those that a `?command` may stand in for."""
+    """Names below the [group] lines, without those that a `?command` may replace."""
     names, group = [], None
     for line in (ROOT / "packages.txt").read_text().splitlines():
         words = line.split("#", 1)[0].split()
@@ -40,7 +40,7 @@ def packages_of(*groups: str) -> list[str]:
 
 
 def closure(packages: list[str]) -> set[str]:
-    """What apt would install for the packages if nothing were installed."""
+    """The packages that apt would install for these if nothing were installed."""
     try:
         plan = subprocess.run(["apt-get", "install", "--dry-run", "--no-install-recommends", "--option", "Dir::State::status=/dev/null",
                                *packages], text=True, capture_output=True)
@@ -54,7 +54,7 @@ def closure(packages: list[str]) -> set[str]:
 
 
 def optional_packages() -> set[str]:
-    """Those of the group `optional` that are installed, with what they directly depend on."""
+    """The installed packages of the group `optional`, and those that they directly depend on."""
     allowed = set()
     for name in packages_of("optional"):
         status = subprocess.run(["dpkg-query", "--show", "--showformat=${Depends}", name], text=True, capture_output=True)
@@ -64,7 +64,7 @@ def optional_packages() -> set[str]:
 
 
 def linked_by_name(build: pathlib.Path, targets: list[str]) -> dict[pathlib.Path, str]:
-    """The files behind -lNAME in the link lines, with the program that each is linked to."""
+    """The files of -lNAME in the link lines, with the program that each is linked to."""
     found = {}
     for line in output_of("ninja", "-C", str(build), "-t", "commands", *targets).splitlines():
         if " -l" not in line:
@@ -105,7 +105,7 @@ def owners_by_name(names: list[str]) -> dict[str, set[str]]:
     """The packages of the files that dpkg knows by these names."""
     found = {}
     try:
-        # It ends with 1 where it does not know one of them.
+        # dpkg-query ends with 1 where it does not know one of the names.
         answer = subprocess.run(["dpkg-query", "--search", *names], text=True, capture_output=True).stdout
     except FileNotFoundError as error:
         raise CannotTell("dpkg is not here") from error
@@ -117,13 +117,13 @@ def owners_by_name(names: list[str]) -> dict[str, set[str]]:
 
 
 def other_names(path: pathlib.Path) -> set[str]:
-    """What dpkg may know a file by: with its links resolved, and without /usr, into which Debian 12 has merged /lib."""
+    """Names under which dpkg may know a file: with its links resolved, and without /usr, into which Debian 12 has merged /lib."""
     names = {str(path), str(path.parent.resolve() / path.name), str(path.resolve())}
     return names | {name.removeprefix("/usr") for name in names}
 
 
 def owners(paths: list[pathlib.Path]) -> dict[pathlib.Path, set[str]]:
-    """The packages of each file; none where it belongs to no package."""
+    """The packages of each file; empty where it belongs to no package."""
     by_name = owners_by_name([str(path) for path in paths])
     unknown = [path for path in paths if str(path) not in by_name]
     if unknown:

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks the numbers that steer the physics.
+"""Checks the comments of the constants of the physics.
 
 Usage: check_settings.py [--list] [ROOT]   (default: the folder above this file)
 - Each setting of src/physics/definitions/settings has a comment with "Source: ...", "Bench: scene",
-  "Test: Suite.Name, Suite.Name", of which each exists, or "Open: ..." where nothing shows yet what it is good for. WorldSettings are what users set; they are not looked at.
+  "Test: Suite.Name, Suite.Name", of which each exists, or "Open: ..." where nothing shows its effect yet. WorldSettings, which users set, are not checked.
   Each is reached from SolverSettings.
-- Each other named constant that is a number, in src/physics, has a comment of what it bounds: on its line, on the line
+- Each other named numerical constant in src/physics has a comment that says what it bounds: on its line, on the line
   where its declaration ends, or on the line above it or above the constants before it. Sentinels and tags need none.
---list prints the path of each setting and where it comes from.
+--list prints the path of each setting and its source.
 """
 import argparse
 import pathlib
@@ -25,7 +25,7 @@ CONSTANT = re.compile(r"^\s*(?:inline |static )*constexpr (?:float|double|int|st
 
 
 def comment_above(lines: list, at: int) -> str:
-    """The comment of whole lines that ends above line `at`."""
+    """The comment block that ends above line `at`."""
     above = []
     while at > 0 and lines[at - 1].lstrip().startswith("//"):
         at -= 1
@@ -75,7 +75,7 @@ def paths_of_structs(folder: pathlib.Path) -> dict:
 
 def check_constants(path: pathlib.Path, name: str, wrong: list):
     lines = path.read_text().splitlines()
-    explained = False  # the constant right above has a comment of its own or shares one
+    explained = False  # whether the constant right above has a comment of its own or is covered by an earlier one
     for at, line in enumerate(lines):
         if not CONSTANT.match(line):
             explained = False

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Counts the headers of src/physics that a file of tests/ includes itself, by room, and lists the others.
+"""Counts the headers of src/physics that a file of tests/ includes directly, by folder, and lists the others.
 
 Usage: check_tested_headers.py [--least PERCENT] [--quiet] [ROOT]   (default: the folder above this file)
-Fails where the share of all of them is below PERCENT. A room's namespace.h declares nothing and is not counted. That a header is included does
-not show that it is tested well; one that no test includes is tested by way of others only.
+Fails where the fraction of included headers is below PERCENT. A folder's namespace.h declares nothing and is not counted. That a test
+includes a header does not show that it is tested well; a header that no test includes is tested only through others.
 """
 import argparse
 import collections
@@ -16,7 +16,7 @@ INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"', re.M)
 
 
 def included(folder: pathlib.Path) -> set:
-    """What the C++ files below the folder include."""
+    """The headers that the C++ files below the folder include."""
     found = set()
     for path in folder.rglob("*"):
         if path.suffix in (".h", ".cpp"):

@@ -1,25 +1,25 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Does what the README says, on a machine that has nothing: a new minimal Debian 12 (debootstrap) with a clone of the last commit.
+# Follows the README on an empty machine: a new minimal Debian 12 (debootstrap) with a clone of the last commit.
 #
 #   tools/fresh_machine.sh [all]        run and test, each on a machine of its own
 #   tools/fresh_machine.sh run          ./run --help, then ./run serve until its address answers
 #   tools/fresh_machine.sh test         ./test
 #   tools/fresh_machine.sh configure    the packages of ./run, its configuration, and a dry run of its build
 #
-#   --below DIR     where a folder for the machines is made (default: ${TMPDIR:-/tmp}); some 3 GB
-#   --keep          leaves that folder there
+#   --below DIR     parent of the folder for the machines (default: ${TMPDIR:-/tmp}); some 3 GB
+#   --keep          does not remove that folder
 #   --limit HOURS   ends a command that takes longer, and fails (default: 6)
 #
-# It needs root, debootstrap, git and a network; sources and settings of apt, name servers, proxies and certificates are this machine's.
-# Logs: build/fresh-machine/. Exit status: 0 all is well, 1 a step failed, 2 wrong use, 77 something that it needs is not here.
+# It needs root, debootstrap, git and a network; it uses this machine's sources and settings of apt, name servers, proxies and
+# certificates. Logs: build/fresh-machine/. Exit status: 0 success, 1 a step failed, 2 wrong use, 77 a requirement is missing.
 set -u -o pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/tools/setup.sh"
 
 readonly suite=bookworm exit_usage=2 exit_unable=77
 logs="$root/build/fresh-machine"
-# What was downloaded once; apt and debootstrap check it against the mirror's signed lists each time.
+# Downloads that are kept; apt and debootstrap check them against the mirror's signed lists each time.
 packages="$logs/packages"
 below="${TMPDIR:-/tmp}" folder="" keep=no limit_hours=6 job=""
 
@@ -51,13 +51,15 @@ check_machine() {
         unable "$mirror cannot be reached." "Is there a network? Log: build/fresh-machine/network.log"
 }
 
-# Ends what still runs. Every mount is made in the name space of a command and goes with it; --one-file-system is a second guard.
+# Ends all that still runs. Every mount is made in the mount namespace of a command and ends with it; --one-file-system
+# is a second guard.
 clean_up() {
     [ -z "$job" ] || { kill -KILL -- "-$job" && finish; } 2>/dev/null
     [ -z "$folder" ] || [ $keep = yes ] || rm -rf --one-file-system "$folder"
 }
 
-# start LOG COMMAND…: in the background and a process group of its own, so that an interrupt is heard at once and ends all of it.
+# start LOG COMMAND…: in the background and in a process group of its own, so that an interrupt takes effect at once and
+# ends all of it.
 start() {
     set -m
     timeout --foreground --signal=KILL "${limit_hours}h" unshare --mount --pid --fork --kill-child "${@:2}" >"$1" 2>&1 </dev/null &
@@ -65,7 +67,7 @@ start() {
     set +m
 }
 
-# finish: waits for what was started.
+# finish: waits for the process of start.
 finish() {
     local status
     wait "$job"
@@ -74,7 +76,8 @@ finish() {
     return $status
 }
 
-# start_on MACHINE LOG COMMAND…: the command in the clone on the machine, with nothing of this one's environment but proxies.
+# start_on MACHINE LOG COMMAND…: the command in the clone on the machine, with nothing of this machine's environment but
+# proxies.
 start_on() {
     local machine=$1 log=$2 proxies
     mapfile -t proxies < <(env | grep -iE '^(https?|no|all)_proxy=')
@@ -84,24 +87,25 @@ start_on() {
         bash "${@:3}"
 }
 
-# step_failed STEP LOG [WHY]: the end of its log, and where all of it is.
+# step_failed STEP LOG [WHY]: prints the end of its log, and the path of all of it.
 step_failed() {
     tail -n 30 "$2" >&2
     fail "fresh machine: $1 failed${3:+: $3}." "Log: ${2#"$root"/}"
 }
 
-# What a minimal installation has, and this machine's ways to the network.
+# A minimal installation, with this machine's network configuration.
 make_base() {
     local base="$folder/base"
     say "A minimal Debian 12 from $mirror …"
-    # Nothing of it needs to outlive a crash, and to wait for the disk after each package takes longer than all else.
+    # Nothing of the machine needs to outlive a crash, and waiting for the disk after each package takes longer than all
+    # else.
     mkdir -p "$base/etc/dpkg/dpkg.cfg.d"
     echo force-unsafe-io >"$base/etc/dpkg/dpkg.cfg.d/throw-away"
     start "$logs/debootstrap.log" debootstrap --variant=minbase --cache-dir="$packages" "$suite" "$base" "$mirror"
     finish || step_failed debootstrap "$logs/debootstrap.log"
     rm -f "$base/etc/apt/sources.list"
     mkdir -p "$base/usr/local/share/ca-certificates" "$base/var/cache/packages/partial"
-    # Its packages go to a folder of their own, as settings of apt for containers empty the usual one.
+    # Packages are kept in a folder of their own, because apt's settings for containers empty the usual one.
     if ! { cp -a /etc/apt/. "$base/etc/apt/" && cp -a /usr/share/keyrings/. "$base/usr/share/keyrings/" &&
         cp -L /etc/resolv.conf /etc/hosts "$base/etc/" &&
         { [ ! -d /usr/local/share/ca-certificates ] || cp -rL /usr/local/share/ca-certificates/. "$base/usr/local/share/ca-certificates/"; } &&
@@ -118,7 +122,7 @@ new_machine() {
     cp -a "$folder/base" "$machine" || fail "fresh machine: copying the minimal system failed; is the disk full?"
 }
 
-# on_machine STEP COMMAND…: fails with the log where the command does.
+# on_machine STEP COMMAND…: runs the command; shows its log where it fails.
 on_machine() {
     local log="$logs/$1.log" began=$SECONDS status
     say "$1 … (log: build/fresh-machine/$1.log)"
@@ -132,7 +136,7 @@ on_machine() {
     say "$1: done after $((SECONDS - began)) s"
 }
 
-# keep_build_logs STEP: those of apt, CMake, Ninja and npm on the machine that failed, before it is removed.
+# keep_build_logs STEP: copies the logs of apt, CMake, Ninja and npm from a machine that failed, before it is removed.
 keep_build_logs() {
     local log
     for log in "$machine"/root/embody/build/*.log; do [ ! -f "$log" ] || cp "$log" "$logs/$1.$(basename "$log")"; done
@@ -149,7 +153,7 @@ answers() {
     [[ $line == HTTP/1.?" 200 "* ]]
 }
 
-# ./run serve goes on until it is stopped, so it is watched for the address it prints.
+# ./run serve runs until it is stopped, so the script waits for the address that it prints.
 serve_on_machine() {
     local log="$logs/serve.log" address="" began=$SECONDS
     say "./run serve … (log: build/fresh-machine/serve.log)"
@@ -166,7 +170,7 @@ serve_on_machine() {
 
 try_configure() {
     new_machine configure
-    # Ninja would first write its own file anew, of which a dry run does nothing: so it gets a copy.
+    # Ninja would first write its build file anew, which a dry run does not do: so it gets a copy.
     on_machine configure bash -c 'root=$PWD && . tools/setup.sh && install_packages build run && configure_program release &&
         cd build/release && cp build.ninja dry.ninja && ninja -f dry.ninja -n'
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes what is generated from the registry of attributes: the tables of docs/attributes.md and the attributes of
+"""Generates texts from the registry of attributes: the tables of docs/attributes.md and the attributes of
 data/schema/scene.schema.json.
 
 Usage: generate_attribute_texts.py EMBODY [--check]
@@ -55,7 +55,7 @@ def main() -> int:
     file = ROOT / "docs" / "attributes.md"
     texts[file] = between(file.read_text(), BEGIN + "\n", END, run("--markdown") + "\n", file)
 
-    # One line an attribute, so that a change shows as one.
+    # One line for each attribute, so that a change appears as one.
     file = ROOT / "data" / "schema" / "scene.schema.json"
     lines = ",\n".join(f"        {json.dumps(a['name'])}: {json.dumps(schema_of(a), ensure_ascii=False)}" for a in registry)
     text = file.read_text()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes what is generated from the lists of a scene's fields (src/scene/document/field_list.h): the types in
+"""Generates texts from the lists of a scene's fields (src/scene/document/field_list.h): the types in
 studio/src/connection/scene_types.ts, the definitions in data/schema/scene.schema.json and the tables in
 docs/scene-format.md.
 
@@ -32,12 +32,12 @@ SIMPLE_SCHEMA = {
     "color": {"anyOf": [{"type": "null"}, {"type": "array", "minItems": 3, "maxItems": 3,
                                            "items": {"type": "number", "minimum": 0, "maximum": 1}}]},
 }
-# Types that the Studio is told with all their fields and never sends.
+# Types that the server always sends with all fields and the Studio never sends.
 ALL_SENT = ("SceneSettings", "Camera")
 DEFINITIONS = {"SceneSettings": "settings", "JointLimit": "limit", "JointMotor": "motor"}
 
-# What the reader takes beside what a list says: names of entities in joints, the friendly form of their frames, one of
-# two fields.
+# Fields that the reader accepts although no list has them: names of entities in joints, the friendly form of their
+# frames, one of two fields.
 ENTITY_NAME = {"$ref": "#/definitions/entity_name"}
 OTHER_FIELDS = {("Joint", "entity_a"): ENTITY_NAME, ("Joint", "entity_b"): ENTITY_NAME,
                 ("set_attribute", "name"): {"$ref": "#/definitions/attribute_name"},
@@ -59,7 +59,7 @@ def definition_name(type_name: str) -> str:
 
 
 def said(field: dict) -> str:
-    """Its meaning with unit and range."""
+    """The field's meaning with unit and range."""
     low, high = field.get("low"), field.get("high")
     bounds = ""
     if "above" in field:
@@ -71,7 +71,7 @@ def said(field: dict) -> str:
 
 
 def plain(value: object) -> object:
-    """Without the point of what is whole."""
+    """The number as text, without a decimal point where it is whole."""
     if isinstance(value, list):
         return [plain(each) for each in value]
     return int(value) if isinstance(value, float) and value.is_integer() else value
@@ -125,7 +125,7 @@ def schema_field(owner: str, field: dict) -> dict:
                 schema[keyword] = int(field[bound]) if float(field[bound]).is_integer() else field[bound]
     if field["type"].endswith("[]"):
         schema = {"type": "array", "items": schema}
-    # Draft 7 ignores what stands beside a reference.
+    # Draft 7 ignores other keys beside a reference.
     text = field["meaning"] + (f", {field['unit']}" if field.get("unit") else "")
     return schema if "$ref" in schema else {"description": text, **schema}
 
@@ -135,7 +135,7 @@ def line(value: object) -> str:
 
 
 def schema_object(owner: str, fields: list, word: str | None, indent: str) -> str:
-    """One field a line, so that a change shows as one."""
+    """One line for each field, so that a change appears as one."""
     needed = (["type"] if word else []) + [field["name"] for field in fields if field["saved"] == "needed"]
     lines = [f'{line("type")}: {line({"const": word})}'] if word else []
     lines += [f'{line(field["name"])}: {line(schema_field(word if (word, field["name"]) in OTHER_FIELDS else owner, field))}'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws docs/images/convergence.svg from what `embody bench convergence --json` measured. Needs python3-matplotlib.
+"""Draws docs/images/convergence.svg from the results of `embody bench convergence --json`. Needs python3-matplotlib.
 
 Usage: embody bench convergence --json | plot_convergence.py PICTURE.svg
 """
@@ -18,7 +18,7 @@ def main() -> int:
         print(__doc__, file=sys.stderr)
         return 2
     studies = json.load(sys.stdin)["studies"]
-    # The same measurements make the same file.
+    # The same measurements yield the same file.
     matplotlib.rcParams.update({"svg.hashsalt": "embody", "svg.fonttype": "none", "font.size": 8})
     across = 4
     figure, axes = pyplot.subplots(-(-len(studies) // across), across, figsize=(11, 5.2), squeeze=False)
@@ -26,7 +26,7 @@ def main() -> int:
         resolutions = [row["resolution"] for row in study["rows"]]
         errors = [100 * abs(row["error"]) for row in study["rows"]]
         axis.loglog(resolutions, errors, "o-", color="#2563eb", markersize=4)
-        # Second order through the first point, to compare slopes with.
+        # Second order through the first point, as a reference slope.
         second = [errors[0] * (resolutions[0] / n) ** 2 for n in resolutions]
         axis.loglog(resolutions, second, ":", color="#9ca3af")
         axis.set_xticks(resolutions, [str(n) for n in resolutions])

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints which lines and branches of src/ ran, by folder, from the counters of a build with EMBODY_COVERAGE.
+"""Prints which lines and branches of src/ were executed, by folder, from the counters of a build with EMBODY_COVERAGE.
 
 Usage: report_coverage.py [--missing] BUILD [FOLDER…]     FOLDER: of src/, for example physics or physics/fluid; default: all of it
-Counters of all runs since they were last removed (find BUILD -name '*.gcda' -delete) add up. A line or branch that several translation units
-have, as of a header, counts once, and ran if it did in any of them. Sources that were compiled, but of which nothing ran, count with nothing
-run. Branches are counted without those that an exception takes and those of lines without code, as a closing brace: there the compiler
-destroys what an exception leaves behind (gcovr's --exclude-throw-branches and --exclude-unreachable-branches).
---missing: also lists the lines with branches that did not run.
+Counters of all runs since they were last removed (find BUILD -name '*.gcda' -delete) add up. A line or branch of a header that several
+translation units have counts once, and as executed if any of them executed it. Sources that were compiled but not executed count with all
+their lines. Branches that only an exception takes are not counted, nor those of lines without code, such as a closing brace, where the
+compiler destroys objects after an exception (gcovr's --exclude-throw-branches and --exclude-unreachable-branches).
+--missing: also lists the lines with branches that were not executed.
 """
 import argparse
 import collections
@@ -22,9 +22,9 @@ import tempfile
 
 
 def read_notes(notes: pathlib.Path) -> list:
-    """What gcov says of one translation unit: its files with lines and branches."""
+    """gcov's report of one translation unit: its files with lines and branches."""
     with tempfile.TemporaryDirectory() as scratch:
-        # Without counters gcov reads the notes alone: nothing ran.
+        # Without counters gcov reads the notes alone: nothing was executed.
         result = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", str(notes)], cwd=scratch,
                                 capture_output=True, check=False)
     files = []
@@ -52,7 +52,7 @@ def main() -> int:
         print(f"{options.build} has no counters: build it with the preset `coverage`")
         return 1
 
-    # By file: whether each line ran; by line and number of the branch: whether it did.
+    # By file: whether each line was executed; by line and number of the branch: whether it was.
     lines, branches, texts = collections.defaultdict(dict), collections.defaultdict(dict), {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for files in pool.map(read_notes, notes):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Set-up shared by ./run and ./test: packages, build, front-end, model catalogues. Sourced, not run; the caller sets `root`.
-# Every step says what it does; a failing one says what failed and what to do.
+# Set-up for ./run and ./test: packages, build, front-end, model catalogues. Sourced, not run; the caller sets `root`.
+# Every step prints what it does; a failing one prints what failed and what to do.
 
 say() { printf '%s\n' "$*" >&2; }
 fail() {
@@ -28,7 +28,7 @@ missing_packages() {
     done
 }
 
-# install_packages GROUP…: as root, or with sudo where that needs no password or there is a terminal to ask at.
+# install_packages GROUP…: as root, or with sudo where that needs no password or a terminal can ask for it.
 install_packages() {
     command -v dpkg-query >/dev/null 2>&1 || fail "this set-up is for Debian 12, and dpkg is not here." \
         "Install the packages named in packages.txt by your system's means, then build with: cmake --preset release && cmake --build --preset release"
@@ -54,7 +54,8 @@ install_packages() {
     fi
 }
 
-# Of Ninja's lines every tenth step as soon as it is done, and whatever is no step. (mawk would wait for a full block.)
+# Prints every tenth step of Ninja's output as soon as it is done, and all lines that are no step. (mawk would wait for
+# a full block.)
 every_tenth_step() {
     local line steps=0
     while IFS= read -r line; do
@@ -66,13 +67,14 @@ every_tenth_step() {
     done
 }
 
-# configure_program PRESET [with-tests]: only where the build folder is not yet as wanted. The tests ask for packages that only ./test
-# installs, so they are left out until it puts them in; then they stay, as every change writes the build files anew.
+# configure_program PRESET [with-tests]: configures where the build folder is not as wanted. The tests need packages
+# that only ./test installs, so they are left out until ./test adds them; then they stay, because every change writes
+# the build files anew.
 configure_program() {
     local preset=$1 tests=OFF folder="$root/build/$1" log="$root/build/$1.log"
     [ "${2-}" != with-tests ] || tests=ON
     mkdir -p "$root/build"
-    # After a configuration that failed, its settings are newer than the build files.
+    # After a failed configuration the settings are newer than the build files.
     if [ "$folder/build.ninja" -nt "$folder/CMakeCache.txt" ] &&
         { [ $tests = OFF ] || grep -qx "EMBODY_TESTS:BOOL=ON" "$folder/CMakeCache.txt"; }; then
         return
@@ -81,12 +83,12 @@ configure_program() {
     (cd "$root" && cmake --preset "$preset" -DEMBODY_TESTS=$tests) >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "configuring failed (log: build/$preset.log)."; }
 }
 
-# build_program PRESET TARGET…: builds what changed, of everything where no target is named.
+# build_program PRESET TARGET…: builds what changed, or everything where no target is named.
 build_program() {
     local preset=$1 log="$root/build/$1.log"
     shift
     [ -x "$root/build/$preset/src/embody" ] || say "Building ($preset); the first time this takes some minutes …"
-    # Ninja's own progress line where there is a terminal, every tenth step elsewhere.
+    # Ninja's own progress line on a terminal, every tenth step elsewhere.
     if [ -t 2 ]; then
         (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") >&2 || fail "the build failed." "The compiler's message is above."
     else
@@ -95,13 +97,13 @@ build_program() {
     fi
 }
 
-# npm with its own noise taken away and errors kept.
+# npm without its usual output; errors are kept.
 run_npm() {
     local log="$root/build/npm.log"
     (cd "$root/studio" && npm "$@" --no-audit --no-fund --loglevel=error) >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "npm $* failed in studio/ (log: build/npm.log)." "It needs Node.js 18 or newer ($(node --version 2>/dev/null || echo 'none found')) and, the first time, a network."; }
 }
 
-# The front-end: packages when the lock file changed, the bundle when a source did.
+# The front-end: installs packages when the lock file changed, builds the bundle when a source did.
 build_studio() {
     local stamp="$root/studio/node_modules/.embody-lock" lock
     lock=$(cksum <"$root/studio/package-lock.json")
@@ -117,8 +119,8 @@ build_studio() {
     fi
 }
 
-# Prints the catalogues of real models on this machine, one path a line. The furniture of Sweet Home 3D's own program lies in
-# a package that would bring Java with it, so only its archive is fetched and unpacked.
+# Prints the catalogues of real models on this machine, one path per line. The furniture of Sweet Home 3D's own program
+# is in a package that would install Java, too, so only its archive is fetched and unpacked.
 model_catalogues() {
     local folder="$1" piece
     for piece in /usr/share/sweethome3d/furniture/*.sh3f; do [ -f "$piece" ] && printf '%s\n' "$piece"; done

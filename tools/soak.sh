@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # tools/soak.sh [--minutes N] [--kills N] [--size N] [--seed S]
-# What takes too long for ./test, for the night: a server at work for an hour (--minutes) with the sanitized fuzz targets in turns beside
-# it, 1,000 kills of programs that write (--kills), and ten times as many hostile files (--size). Prints a summary of each and goes on
-# after a failure; the exit code is 1 where one failed, and what fuzz targets failed on lies in build/fuzz-failures.
+# Tests that take too long for ./test, for a night: a server under load for an hour (--minutes) with the sanitized fuzz targets in turns,
+# 1,000 kills of programs that write (--kills), and ten times as many hostile files (--size). Prints a summary of each and goes on
+# after a failure; the exit code is 1 where one failed, and inputs on which fuzz targets failed are in build/fuzz-failures.
 set -u -o pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/tools/setup.sh"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Shows that the tests which settings of the solvers name do fail with other values.
+"""Shows that the tests which the comments of solver settings name fail with other values.
 
 Usage: try_settings.py [--build FOLDER] [--tests FILTER] [PREFIX ...]   (default: build/release, the tests that each names)
 For each setting whose path starts with a PREFIX (`collision`, `constraint.joint`, ...): runs the tests that its comment
-names with ten times the value, then with a tenth, each within its range, and prints which fail. Lists at the end those
-settings whose tests notice neither. --tests runs these tests (a googletest filter) for all settings instead, to find
-some that notice. It takes minutes, so it is none of the tests itself.
+names with ten times the value, then with a tenth, each within its range, and prints which fail. Lists at the end the
+settings whose tests detect neither. --tests runs these tests (a googletest filter) for all settings instead, to find
+some that do. It takes minutes, so it is not one of the tests.
 """
 import argparse
 import concurrent.futures
@@ -32,7 +32,7 @@ def named_tests() -> dict:
 
 
 def other_values(value: float, low: float, high: float, is_integer: bool) -> list:
-    """Ten times and a tenth, within the range."""
+    """Ten times and a tenth of the value, within the range."""
     values = []
     for wanted in (10 * value, value / 10):
         other = min(max(wanted, low), high)
@@ -44,7 +44,7 @@ def other_values(value: float, low: float, high: float, is_integer: bool) -> lis
 
 
 def failures(build: pathlib.Path, path: str, value: float, tests: str) -> list:
-    """Which of the tests fail with the value, of all programs that step worlds."""
+    """The tests that fail with the value, of all programs that step worlds."""
     failed = []
     environment = dict(os.environ, EMBODY_SETTING=f"{path}={value!r}")
     for program in ("test_physics", "test_validation"):

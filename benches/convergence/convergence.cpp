@@ -29,12 +29,12 @@ double beam_frequency() {
            std::sqrt(beam_youngs_modulus * beam_side * beam_side / 12 / beam_density) / (beam_length * beam_length);
 }
 
-// w L⁴/8B, B per width, and the same of a rod.
+// w L⁴/8B, B per width; the same for a rod.
 constexpr double hanging_end(double density, double length, double rigidity) {
     return density * g * length * length * length * length / (8 * rigidity);
 }
 
-// c (cosh x - 1) with sinh x / x = S/D and c = D/2x: length S over the span D.
+// c (cosh x - 1) with sinh x / x = S/D and c = D/2x: a rope of length S over the span D.
 double catenary_sag() {
     double low = 1e-6, high = 10;
     for (int i = 0; i < 100; ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace physics;
 
-/// A world with one deformable in it.
+/// A world with one deformable.
 struct Bench {
     std::unique_ptr<World> world;
     DeformableHandle deformable;
@@ -28,7 +28,7 @@ Result<Bench> bench_of(const DeformableDefinition& definition, double rate = 60)
     return Bench{std::move(*world), *deformable};
 }
 
-/// Mean height of the nodes that `is_counted` picks by where they were defined, m.
+/// Mean height, m, of the nodes that `is_counted` selects by their positions in the definition.
 double mean_height(const Bench& bench, const auto& is_counted) {
     const auto& rest = bench.world->deformable(bench.deformable)->nodes;
     const auto now = bench.world->node_positions(bench.deformable);
@@ -74,13 +74,13 @@ Result<double> tip_of_beam(int cells) {
 Result<double> frequency_of_beam(int rate) {
     auto bench = bench_of(beam(2, 0), rate);
     if (!bench) return bench.error();
-    // From straight: it swings about where it will hang.
+    // Released from the straight position it oscillates about its equilibrium.
     const double period = period_of(record(*bench->world, 1.5, [&] { return tip_height(*bench); }), 1.0 / rate);
     return period > 0 ? 1 / period : 0;
 }
 
 Result<double> tip_of_strip(int triangles) {
-    // Two rows of nodes are held: the clamp is half way between them, and what hangs over is half a row longer.
+    // Two rows of nodes are pinned: the clamp is half way between them, and the free part is half a row longer.
     const double row = strip_length / (triangles + 0.5);
     DeformableDefinition strip = cloth_rectangle(strip_length / 2, row * (triangles + 1), row / std::sqrt(0.75),
                                                  {.area_density = strip_area_density,
@@ -118,7 +118,7 @@ Result<double> sag_of_rope(int segments) {
     rope.pinned = {0, static_cast<std::uint32_t>(segments)};
     auto bench = bench_of(rope);
     if (!bench) return bench.error();
-    // It begins as two straight legs.
+    // The rope starts as two straight segments.
     std::vector<Vec3> nodes = rope.nodes;
     const double depth = std::sqrt(half * half - half_span * half_span);
     for (Vec3& node : nodes) node = {node.x * half_span / half, -depth * (1 - std::fabs(node.x) / half), 0};
@@ -135,7 +135,7 @@ Result<double> period_of_rope(int rate) {
     rope.pinned = {0};
     auto bench = bench_of(rope, rate);
     if (!bench) return bench.error();
-    // In the form of its slowest swing, J0(2.4048 √(1 - s/L)) at the depth s, 2 cm at the lower end.
+    // Start in the shape of the slowest mode, J0(2.4048 √(1 - s/L)) at the depth s, 2 cm at the lower end.
     std::vector<Vec3> nodes = rope.nodes;
     for (Vec3& node : nodes) {
         const double up = std::sqrt(std::max(0.0, 1 + node.y / hanging_length));

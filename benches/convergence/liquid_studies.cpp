@@ -18,7 +18,7 @@ Result<BodyHandle> add_box(World& world, Vec3 half_extents, BodyDefinition defin
     return world.create_body(definition);
 }
 
-/// Five walls around 0 … inside.
+/// A tank of five walls around the box from 0 to `inside`.
 Result<std::unique_ptr<World>> tank(Vec3 inside, double rate) {
     auto world = World::create({.time_step = 1 / rate});
     if (!world) return world.error();
@@ -76,7 +76,7 @@ Result<double> draft_of_slab(int cells) {
                                                .allow_sleep = false});
     if (!water) return water.error();
     constexpr Vec3 half{0.2, slab_height / 2, 0.2};
-    // It begins a little above its place, so that it sinks into what it displaces.
+    // The slab starts a little above its equilibrium and sinks into the water.
     const double begin = tank_depth + slab_height / 2 - 0.9 * slab_height * slab_density / water_density;
     const auto slab = add_box(**world, half,
                               {.position = {tank_length / 2, begin, tank_length / 2},
@@ -84,7 +84,7 @@ Result<double> draft_of_slab(int cells) {
                                .allow_sleep = false});
     if (!slab) return slab.error();
     run(**world, 6);
-    // The mean of a second, in case that it still bobs. What it displaces raises the water around it.
+    // The mean over one second, in case the slab still oscillates. The displaced water raises the surface around it.
     const double bottom_area = 4 * half.x * half.z;
     double sum = 0;
     const auto heights = record(**world, 1, [&] { return (*world)->pose(*slab).position.y; });

@@ -8,14 +8,14 @@
 
 namespace embody::convergence {
 
-/// Steps the world for so many seconds.
+/// Steps the world for this time.
 void run(physics::World& world, double seconds);
 
-/// Time from one upward crossing of the middle of its range to the next, mean over all, s; 0 with fewer than two. One
-/// value a step of `time_step` s.
+/// Mean time from one upward crossing of the middle of the signal's range to the next, s; 0 with fewer than two
+/// crossings. One value for each step of `time_step` s.
 double period_of(const std::vector<double>& signal, double time_step);
 
-/// What `read` gives after each step, for so many seconds.
+/// The results of `read` after each step, for this time.
 std::vector<double> record(physics::World& world, double seconds, const std::function<double()>& read);
 
 }  // namespace embody::convergence

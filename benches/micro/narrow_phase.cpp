@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Nanoseconds a pair of the narrow phase, one thread: for each pair of shapes stacked, tumbled into each other by a
-// millimetre, and apart; without and with the pair's memory. Both must give the same contacts: the sums are compared.
+// Nanoseconds per pair of the narrow phase, on one thread: each pair of shapes stacked, overlapping by a millimetre in
+// random orientations, and separated; without and with the pair's cache. Both must find the same contacts: the sums are
+// compared.
 //
 // Usage: embody-bench-narrow-phase [PART OF A PAIR'S NAME]
 #include <algorithm>
@@ -33,7 +34,7 @@ struct NamedPair {
     std::string name;
     const CollisionShape* a;
     const CollisionShape* b;
-    bool b_is_ground;  ///< only stacked, a above b
+    bool b_is_ground;  ///< the pair is only stacked, a above b
     bool b_is_rough = false;
 };
 
@@ -45,7 +46,7 @@ Quat random_rotation(Random& random) {
     }
 }
 
-// Moves b along `way` until the gap between the two is `gap` (within a micrometre), by halving.
+// Moves b along `way` until the gap between the two is `gap` (within a micrometre), by bisection.
 void set_gap(const NamedPair& pair, PosedPair& pose, Vec3 way, double gap) {
     double near = 0, far = 8;
     while (far - near > 1e-6) {
@@ -57,7 +58,7 @@ void set_gap(const NamedPair& pair, PosedPair& pose, Vec3 way, double gap) {
     pose.b.position = pose.a.position + way * (far + gap);
 }
 
-// A little tilted and turned about Y, a above b: faces meet.
+// Tilted by a small angle and rotated about Y, a above b: faces touch.
 std::vector<PosedPair> stacked_poses(const NamedPair& pair) {
     Random random(11);
     std::vector<PosedPair> poses;
@@ -87,9 +88,9 @@ std::vector<PosedPair> tumbled_poses(const NamedPair& pair, double gap) {
 }
 
 struct Timing {
-    double cold = 1e300, warm = 1e300;  ///< ns a pair
-    double sum_cold = 0, sum_warm = 0;  ///< of all separations
-    double points = 0;                  ///< a pair
+    double cold = 1e300, warm = 1e300;  ///< ns per pair
+    double sum_cold = 0, sum_warm = 0;  ///< sums of all separations
+    double points = 0;                  ///< mean number per pair
 };
 
 double add_up(const std::vector<Manifold>& manifolds, double& points) {
@@ -101,7 +102,7 @@ double add_up(const std::vector<Manifold>& manifolds, double& points) {
     return sum;
 }
 
-// The least of several rounds over all poses.
+// The minimum time of several runs over all poses.
 Timing time_pair(const NamedPair& pair, const std::vector<PosedPair>& poses) {
     using Clock = std::chrono::steady_clock;
     constexpr int rounds = 12;
@@ -136,7 +137,7 @@ Timing time_pair(const NamedPair& pair, const std::vector<PosedPair>& poses) {
     return timing;
 }
 
-// True if the memory changed nothing.
+// True if the results with and without the cache are equal.
 bool report(const NamedPair& pair, const char* how, const std::vector<PosedPair>& poses) {
     const Timing t = time_pair(pair, poses);
     const bool same = std::fabs(t.sum_cold - t.sum_warm) <= 1e-9 * (1 + std::fabs(t.sum_cold));

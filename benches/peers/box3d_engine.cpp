@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Box3D (MIT) with four substeps, as its documentation advises. It has no cylinders: prisms of 16 sides stand in.
+// Box3D (MIT) with four substeps, as its documentation advises. It has no cylinders: prisms of 16 sides replace them.
 #include <box3d/box3d.h>
 #include <fmt/core.h>
 
@@ -102,7 +102,7 @@ private:
         const b3BoxHull hull = b3MakeBoxHull(half.x, half.y, half.z);
         b3CreateHullShape(body, &surface, &hull.base);
     }
-    /// One a shape; null where the shape is no hull.
+    /// Adds a hull for the shape; null where the shape is no hull.
     Result<void> add_hull(const RaceShape& shape) {
         hulls_.push_back(nullptr);
         if (shape.kind != ShapeKind::hull && shape.kind != ShapeKind::cylinder) return {};

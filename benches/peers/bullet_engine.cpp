@@ -78,7 +78,7 @@ public:
         bodies_[body]->activate(true);
         bodies_[body]->setLinearVelocity(to_bullet(velocity));
     }
-    // No substeps of its own: one step of just this length.
+    // One step of exactly this length, without substeps.
     void step() override { world_.stepSimulation(static_cast<btScalar>(race_time_step), 0); }
 
     [[nodiscard]] BodyState state(std::size_t body) const override {

@@ -2,7 +2,7 @@
 //
 // Jolt Physics (MIT) with its default settings.
 #include <Jolt/Jolt.h>
-// Jolt.h comes first.
+// Jolt.h must be included first.
 #include <Jolt/Core/Factory.h>
 #include <Jolt/Core/JobSystemSingleThreaded.h>
 #include <Jolt/Core/JobSystemThreadPool.h>
@@ -57,7 +57,7 @@ JPH::Quat to_jolt(Quat q) {
 }
 Vec3 from_jolt(JPH::Vec3Arg v) { return {v.GetX(), v.GetY(), v.GetZ()}; }
 
-/// Types and allocators, once a process.
+/// Registers types and allocators, once per process.
 void initialise() {
     static const bool done = [] {
         JPH::RegisterDefaultAllocator();
@@ -138,7 +138,7 @@ public:
         face().SetLinearVelocity(bodies_[body], to_jolt(velocity));
     }
     void step() override {
-        // Before the first step its trees are built in one go, as its documentation advises after loading.
+        // Before the first step the trees are built at once, as the documentation advises after loading.
         if (!optimised_) system_.OptimizeBroadPhase();
         optimised_ = true;
         system_.Update(static_cast<float>(race_time_step), 1, &scratch_, jobs_.get());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ODE (BSD or LGPL) with its fast solver: contacts are made anew in each step, at most eight a pair. One thread.
+// ODE (BSD or LGPL) with its fast solver: contacts are computed anew in each step, at most eight per pair. One thread.
 #include <fmt/core.h>
 #include <ode/ode.h>
 
@@ -13,11 +13,11 @@ namespace embody::race {
 namespace {
 
 constexpr int contacts_a_pair = 8;
-constexpr dReal bounce_threshold = 1;  // m/s, as ODE's own demos have it
+constexpr dReal bounce_threshold = 1;  // m/s, as in ODE's own demos
 
 dReal to_ode(double number) { return static_cast<dReal>(number); }
 
-/// ODE keeps pointers into these.
+/// ODE keeps pointers into this data.
 struct HullData {
     std::vector<dReal> planes, points;
     std::vector<unsigned> polygons;
@@ -45,7 +45,7 @@ public:
     OdeEngine(const RaceScene& scene, const EngineSetup& setup) : scene_(scene) {
         static const int initialised = dInitODE2(0);
         static_cast<void>(initialised);
-        // The solver shuffles its rows: the same way in each repeat.
+        // The solver shuffles its rows: in the same order in each repeat.
         dRandSetSeed(0);
         world_ = dWorldCreate();
         dWorldSetGravity(world_, 0, to_ode(-race_gravity), 0);
@@ -81,7 +81,7 @@ public:
         const dGeomID geometry = add_geometry(body.shape);
         dGeomSetBody(geometry, id);
         if (scene_.shapes[body.shape].kind == ShapeKind::cylinder) {
-            // ODE's cylinders lie along Z.
+            // ODE's cylinders have their axis along Z.
             dMatrix3 upright;
             dRFromAxisAndAngle(upright, 1, 0, 0, to_ode(std::numbers::pi / 2));
             dGeomSetOffsetRotation(geometry, upright);
@@ -183,7 +183,7 @@ private:
         dGeomTriMeshDataBuildSingle(terrain_, terrain_vertices_.data(), 3 * sizeof(float),
                                     static_cast<int>(terrain.vertices.size()), terrain_indices_.data(),
                                     static_cast<int>(terrain_indices_.size()), 3 * sizeof(dTriIndex));
-        // Convex shapes against triangles need the angles between them.
+        // Contacts of convex shapes with triangles need the angles between the triangles.
         constexpr unsigned face_angles = 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES;
         dGeomTriMeshDataPreprocess2(terrain_, face_angles, nullptr);
         dCreateTriMesh(fixed_, terrain_, nullptr, nullptr, nullptr);

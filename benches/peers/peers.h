@@ -5,7 +5,8 @@
 
 namespace embody::race {
 
-// One a file beside this one; CMake compiles those whose engine it finds and says so by EMBODY_RACE_….
+// One function for each engine's file in this folder; CMake compiles those whose engine it finds and defines
+// EMBODY_RACE_….
 
 Result<std::unique_ptr<RaceEngine>> make_bullet_engine(const RaceScene& scene, const EngineSetup& setup);
 Result<std::unique_ptr<RaceEngine>> make_ode_engine(const RaceScene& scene, const EngineSetup& setup);

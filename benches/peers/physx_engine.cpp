@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // PhysX 5 (BSD) on the CPU with its default iterations, once with each of its two solvers. Its cylinders are hulls, so
-// prisms of 16 sides stand in.
+// prisms of 16 sides replace them.
 #include <PxPhysicsAPI.h>
 #include <fmt/core.h>
 
@@ -15,7 +15,7 @@ using namespace physx;
 PxVec3 to_physx(Vec3 v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 Vec3 from_physx(const PxVec3& v) { return {v.x, v.y, v.z}; }
 
-/// One a process.
+/// One for the process.
 PxPhysics* physics() {
     static PxDefaultAllocator allocator;
     static PxDefaultErrorCallback errors;
@@ -119,7 +119,7 @@ private:
     }
     [[nodiscard]] static PxCookingParams cooking() { return PxCookingParams(physics()->getTolerancesScale()); }
 
-    /// One a shape; null where the shape is no hull.
+    /// Adds a hull for the shape; null where the shape is no hull.
     Result<void> add_hull(const RaceShape& shape) {
         hulls_.push_back(nullptr);
         if (shape.kind != ShapeKind::hull && shape.kind != ShapeKind::cylinder) return {};

@@ -10,7 +10,7 @@ namespace {
 
 using physics::StepStage;
 
-/// Empty for a number that is no stage.
+/// Name of a stage; empty for a number that is no stage.
 std::string_view stage_name(StepStage stage) {
     switch (stage) {
         case StepStage::wake:
@@ -63,7 +63,7 @@ physics::MeshShape mesh_of(const Terrain& terrain) {
     return mesh;
 }
 
-/// This project, through its public face only.
+/// This project, through its public interface only.
 class EmbodyEngine : public RaceEngine {
 public:
     Result<void> build(const RaceScene& scene, const EngineSetup& setup) {
@@ -103,7 +103,7 @@ public:
     }
     void set_velocity(std::size_t body, Vec3 velocity) override {
         const auto set = world_->set_velocity(bodies_[body], velocity, world_->angular_velocity(bodies_[body]));
-        static_cast<void>(set.ok());  // finite and of a body that is there
+        static_cast<void>(set.ok());  // cannot fail: the velocity is finite and the body exists
     }
     void step() override { world_->step(); }
 

@@ -9,12 +9,12 @@
 namespace embody::race {
 namespace {
 
-// A top half a cube lower has fallen; a tenth of a cube deep in another is no contact any more.
+// A top cube that is half a cube lower has fallen; an overlap of a tenth of a cube is more than a contact.
 constexpr double fallen_depth = 0.5;      // m
 constexpr double greatest_overlap = 0.1;  // m
 constexpr double energy_tolerance = 1e-3;
 
-// A structure that stands has come to rest by then; its cubes' mean speed is below this.
+// A structure that stands has come to rest after so many frames; then its cubes' mean speed is below `rest_speed`.
 constexpr int frames_to_rest = 300;
 constexpr double rest_speed = 0.05;  // m/s
 
@@ -70,7 +70,7 @@ EndState RunWatch::finish(const RaceEngine& engine) const {
         end.potential_energy += potential_energy(bodies_[i], states[i].position);
         top = std::max(top, states[i].position.y);
     }
-    // Once a structure was hit its height tells nothing.
+    // After a hit the height of a structure has no meaning.
     const bool was_hit = scene_.stands_until && !must_stand();
     if (scene_.true_top && !was_hit) end.top_gap = top - *scene_.true_top;
     end.overlap = measure_overlap(scene_, bodies_, states);

@@ -8,41 +8,41 @@
 
 namespace embody::race {
 
-/// What a run ended in: a time counts only with this beside it, since a structure that fell is less work.
+/// The end state of a run: a time counts only together with it, because a structure that fell is less work.
 struct EndState {
     double kinetic_energy = 0;      ///< J
     double potential_energy = 0;    ///< J above the height 0
-    std::optional<double> top_gap;  ///< highest centre above where it would be if nothing sank or fell, m
+    std::optional<double> top_gap;  ///< height of the highest centre over its height without sinking and falling, m
     Overlap overlap;
     int asleep = 0;
-    std::string wrong;  ///< empty: as it must be; else why it is not
+    std::string wrong;  ///< empty: correct; else the reason why it is not
 };
 
-/// What is followed while an engine runs a scene.
+/// Observes an engine while it runs a scene.
 class RunWatch {
 public:
     explicit RunWatch(const RaceScene& scene);
 
-    /// Before step `frame`, before its events.
+    /// To be called before step `frame` and before its events.
     void before_frame(int frame, const RaceEngine& engine);
-    /// An event is about to change the engine: its energy may be kept.
+    /// To be called before an event changes the engine: stores the engine's energy if needed.
     void before_event(const RaceEvent& event, const RaceEngine& engine);
-    /// After the last step.
+    /// To be called after the last step.
     [[nodiscard]] EndState finish(const RaceEngine& engine) const;
 
 private:
-    /// Nothing has hit the structure, if it is one, up to now.
+    /// Whether the scene is a structure that nothing has hit up to now.
     [[nodiscard]] bool must_stand() const;
     [[nodiscard]] bool stands(const RaceEngine& engine) const;
     [[nodiscard]] double kinetic_energy(const RaceBody& body, const BodyState& state) const;
     [[nodiscard]] std::string judge(const EndState& end, bool standing) const;
 
     const RaceScene& scene_;
-    std::vector<RaceBody> bodies_;  ///< with those that events added
-    std::size_t top_body_ = 0;      ///< the highest at the start
-    double energy_given_ = 0;       ///< at the start and by events, J
+    std::vector<RaceBody> bodies_;  ///< including those that events added
+    std::size_t top_body_ = 0;      ///< the highest body at the start
+    double energy_given_ = 0;       ///< energy at the start and by events, J
     int frames_ = 0;                ///< run up to now
-    bool fell_early_ = false;       ///< before its event
+    bool fell_early_ = false;       ///< before the event that hits it
 };
 
 }  // namespace embody::race

@@ -11,7 +11,7 @@
 
 namespace embody::race {
 
-/// Where a body is and how it moves, world axes, m, m/s, rad/s.
+/// Pose and velocity of a body, world axes, m, m/s, rad/s.
 struct BodyState {
     Vec3 position;  ///< of the centre of mass
     Quat rotation;
@@ -29,40 +29,40 @@ struct StageTime {
     double milliseconds = 0;
 };
 
-/// A scene in an engine. All engines run with their own default settings. Bodies are numbered in the order they were
-/// added, the scene's own first. The scene outlives the engine.
+/// A scene in an engine. All engines run with their own default settings. Bodies are numbered in the order in which
+/// they were added, the scene's own first. The scene outlives the engine.
 class RaceEngine {
 public:
     virtual ~RaceEngine() = default;
     RaceEngine(const RaceEngine&) = delete;
     RaceEngine& operator=(const RaceEngine&) = delete;
 
-    /// Version and the settings that decide cost and quality, for people.
+    /// Version of the engine, and the settings that determine cost and quality, as text.
     [[nodiscard]] virtual std::string settings() const = 0;
-    /// Threads it really steps with; some engines or builds of them know one only.
+    /// Number of threads that it really uses; some engines or builds of them support only one.
     [[nodiscard]] virtual int threads() const = 0;
 
     virtual Result<void> add_body(const RaceBody& body) = 0;
     virtual void set_velocity(std::size_t body, Vec3 velocity) = 0;
-    /// Advances by race_time_step; all that is timed.
+    /// Advances by race_time_step; only this call is timed.
     virtual void step() = 0;
 
     [[nodiscard]] virtual BodyState state(std::size_t body) const = 0;
     [[nodiscard]] virtual int count_asleep() const = 0;
-    /// Parts of the last step, where the engine tells them.
+    /// Times of the parts of the last step, where the engine reports them.
     [[nodiscard]] virtual std::vector<StageTime> stages() const { return {}; }
 
 protected:
     RaceEngine() = default;
 };
 
-/// How to make an engine with the scene's static bodies in it; race() adds the movable ones.
+/// A function that makes an engine with the scene's static bodies in it; race() adds the movable ones.
 struct EngineKind {
     std::string_view name;
     Result<std::unique_ptr<RaceEngine>> (*make)(const RaceScene& scene, const EngineSetup& setup);
 };
 
-/// Embody first, then those peers that were found when this was built.
+/// Embody first, then the other engines that were found by the build.
 const std::vector<EngineKind>& engine_kinds();
 
 Result<std::unique_ptr<RaceEngine>> make_embody_engine(const RaceScene& scene, const EngineSetup& setup);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The program behind `embody bench race`, apart from embody itself so that that never links another engine.
+// The program that `embody bench race` runs, separate from embody, which therefore never links another engine.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@
 namespace embody::race {
 namespace {
 
-// As the other commands: a wrong answer fails, so do wrong words.
+// The same codes as the other commands: a wrong result fails, and so do wrong arguments.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2 };
 
 struct Arguments {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Separating axes, exact for polytopes: Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996. Made for clearness and once
-// a race, not for speed.
+// Separating axes, exact for polytopes: Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996. Written for clarity, not
+// for speed, because it runs once per race.
 #include "benches/race/overlap.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double huge = std::numeric_limits<double>::max();
 
-/// A body with its polytope placed in the world.
+/// A body with its polytope in world coordinates.
 struct Placed {
     const RaceShape* shape = nullptr;
     BodyState state;
@@ -22,7 +22,7 @@ struct Placed {
     bool escaped = false;
 };
 
-/// Interval of the corners along an axis.
+/// Interval of the vertices' projections on an axis.
 struct Extent {
     double low = huge, high = -huge;
 };
@@ -45,14 +45,14 @@ double overlap_of_polytopes(const Placed& a, const Placed& b) {
         return least > 0;
     };
 
-    // The line of centres is no face's normal, but most pairs that are apart end here.
+    // The direction between the centres is no face normal, but it separates most separated pairs early.
     const Vec3 between = b.state.position - a.state.position;
     if (length(between) > 1e-9 && !overlaps_along(normalized(between))) return least;
     for (const Placed* side : {&a, &b})
         for (const Vec3 normal : side->shape->face_normals)
             if (!overlaps_along(rotate(side->state.rotation, normal))) return least;
 
-    // Edge against edge.
+    // Cross products of edge directions.
     for (const Vec3 edge_a : a.shape->edge_directions) {
         const Vec3 along_a = rotate(a.state.rotation, edge_a);
         for (const Vec3 edge_b : b.shape->edge_directions) {
@@ -68,16 +68,16 @@ double distance_to_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
                  d6 = dot(ac, cp);
-    // Corners.
+    // Vertex regions.
     if (d1 <= 0 && d2 <= 0) return length(ap);
     if (d3 >= 0 && d4 <= d3) return length(bp);
     if (d6 >= 0 && d5 <= d6) return length(cp);
-    // Edges.
+    // Edge regions.
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0) return length(ap - ab * (d1 / (d1 - d3)));
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return length(ap - ac * (d2 / (d2 - d6)));
     if (va <= 0 && d4 >= d3 && d5 >= d6) return length(bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
-    // Inside.
+    // Face region.
     return length(ap - (ab * vb + ac * vc) / (va + vb + vc));
 }
 
@@ -101,7 +101,7 @@ double overlap_of(const Placed& a, const Placed& b) {
     return overlap_of_polytopes(a, b);
 }
 
-/// How far a point lies below the triangle above or below it, along the triangle's normal; 0 beside the terrain.
+/// Depth of a point below the triangle that is above or below it, along the triangle's normal; 0 beside the terrain.
 double depth_in_terrain(const Terrain& terrain, Vec3 p) {
     const double from_edge_x = p.x + 0.5 * terrain.cells, from_edge_z = p.z + 0.5 * terrain.cells;
     const int column = static_cast<int>(std::floor(from_edge_x)), row = static_cast<int>(std::floor(from_edge_z));
@@ -128,7 +128,7 @@ bool has_escaped(const RaceScene& scene, Vec3 centre) {
     return centre.y < 0 || (scene.pen_half_width > 0 && aside > scene.pen_half_width);
 }
 
-/// A point with the radius about it that belongs to the body.
+/// Depth in the static bodies of the ball of this radius around a point.
 double depth_in_statics(const RaceScene& scene, Vec3 point, double radius) {
     if (scene.terrain.cells > 0) return depth_in_terrain(scene.terrain, point) + radius;
     double depth = radius - point.y;
@@ -164,7 +164,7 @@ Overlap measure_overlap(const RaceScene& scene, std::span<const RaceBody> bodies
     overlap.escaped = static_cast<int>(std::erase_if(placed, [](const Placed& body) { return body.escaped; }));
     for (const Placed& body : placed) overlap.statics = std::max(overlap.statics, depth_in_statics(scene, body));
 
-    // Sweep along X, then spheres about the bodies, then the shapes.
+    // Sweep along X, then bounding spheres, then the shapes.
     const auto low = [](const Placed& body) { return body.state.position.x - body.shape->bound; };
     std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) { return low(a) < low(b); });
     for (std::size_t i = 0; i < placed.size(); ++i) {

@@ -10,7 +10,8 @@
 namespace embody::race {
 namespace {
 
-// Short enough that slow drifts of the machine meet all engines, long enough that caches are warm for most of it.
+// Short enough that slow changes of the machine's speed affect all engines, long enough that caches are warm for most
+// of it.
 constexpr int frames_in_block = 10;
 
 double now_ms(clockid_t clock) {
@@ -25,10 +26,10 @@ struct Runner {
     RunWatch watch;
 };
 
-/// What is kept of an engine over the repeats.
+/// Results of an engine that are kept over the repeats.
 struct Best {
-    std::vector<double> frame_ms;                ///< the least
-    std::vector<std::vector<StageTime>> stages;  ///< the least of each stage, by frame
+    std::vector<double> frame_ms;                ///< the minimum over the repeats
+    std::vector<std::vector<StageTime>> stages;  ///< the minimum of each stage, by frame
 };
 
 Result<Runner> start(const RaceScene& scene, const EngineKind& kind, const EngineSetup& setup) {
@@ -61,7 +62,7 @@ void keep_least(std::vector<StageTime>& least, std::vector<StageTime> now) {
         least[i].milliseconds = std::min(least[i].milliseconds, now[i].milliseconds);
 }
 
-/// Frames `first` … `last`-1 of one engine.
+/// Runs the frames `first` … `last`-1 of one engine.
 Result<void> run_block(const RaceScene& scene, int first, int last, clockid_t clock, Runner& runner, Best& best) {
     for (int frame = first; frame < last; ++frame) {
         runner.watch.before_frame(frame, *runner.engine);
@@ -87,7 +88,7 @@ void summarise(const Best& best, Lap& lap) {
     lap.p99_ms = sorted[count * 99 / 100];
     lap.max_ms = sorted.back();
 
-    // Stages: mean over the frames.
+    // Stages: the mean over the frames.
     lap.stages = best.stages.front();
     for (std::size_t s = 0; s < lap.stages.size(); ++s) {
         double sum = 0;

@@ -14,13 +14,13 @@ struct RaceOptions {
     int steps = 0;    ///< 0: the scene's own number
 };
 
-/// One engine's run of one scene. Each frame's time is the least over the repeats, in which its work is the same.
+/// One engine's run of one scene. Each frame's time is the minimum over the repeats, in which its work is the same.
 struct Lap {
     std::string engine, settings;
     int threads = 1;
-    double mean_ms = 0, median_ms = 0, p99_ms = 0, max_ms = 0;  ///< over the frames
+    double mean_ms = 0, median_ms = 0, p99_ms = 0, max_ms = 0;  ///< over all frames
     EndState end;                                               ///< of the last repeat
-    std::vector<StageTime> stages;                              ///< mean a step, wall time; only Embody's
+    std::vector<StageTime> stages;                              ///< mean per step, wall time; only Embody's
 };
 
 struct RaceResult {
@@ -29,8 +29,8 @@ struct RaceResult {
     std::vector<Lap> laps;  ///< in the order of the engines
 };
 
-/// Runs the scene in all engines side by side: blocks of frames of one after the other, so that what else the machine
-/// does meets all alike. Timed by the process's CPU clock for one thread, by wall clock for more.
+/// Runs the scene in all engines in turns: a block of frames of one after the other, so that other work of the machine
+/// affects all of them equally. Timed by the process's CPU clock for one thread, by wall clock for more.
 Result<RaceResult> race(const RaceScene& scene, const std::vector<EngineKind>& kinds, const RaceOptions& options);
 
 }  // namespace embody::race

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view own_name = "embody";
 
-/// Embody's lap, if it ran.
+/// Embody's lap, if it took part.
 const Lap* own_lap(const RaceResult& result) {
     const auto is_own = [](const Lap& lap) { return lap.engine == own_name; };
     const auto found = std::find_if(result.laps.begin(), result.laps.end(), is_own);
     return found == result.laps.end() ? nullptr : &*found;
 }
 
-/// Embody's time over the peer's; below 1 Embody is faster.
+/// Embody's time divided by the other engine's; below 1 Embody is faster.
 std::string ratio(double own, double peer) { return fmt::format("{:.2f}", own / peer); }
 
 std::string end_in_words(const EndState& end) {

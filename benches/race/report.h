@@ -7,13 +7,13 @@
 
 namespace embody::race {
 
-/// A table on standard output: a row an engine, `stages` adds where Embody's time went.
+/// Prints a table with a row for each engine; `stages` adds the times of Embody's stages.
 void print_race(const RaceResult& result, const RaceOptions& options, bool stages);
 
-/// The same for programs.
+/// The same as JSON.
 nlohmann::json to_json(const RaceResult& result);
 
-/// Embody's answer was as it must be; the peers' are their own affair.
+/// Whether Embody's end state was correct; those of other engines are not judged.
 bool embody_is_right(const RaceResult& result);
 
 }  // namespace embody::race

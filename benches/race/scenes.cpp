@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Table I (e), (f), (g) of the paper and structures at which engines differ. The numbers and the order of the random
-// draws are part of the scenes: figures of other days and other machines stay comparable.
+// Table I (e), (f), (g) of the paper and structures on which engines differ. The numbers and the order of the random
+// draws are part of the scenes, so that figures of other days and other machines are comparable.
 #include "benches/race/scenes.h"
 
 #include <array>
@@ -44,7 +44,7 @@ void add_pen(RaceScene& scene, double half_width, double height) {
         scene.statics.push_back({{along, height / 2, half_wall}, {0, height / 2, side * at}});
 }
 
-/// Unit cubes in one plane, `base` in the lowest row, each on two of the row below.
+/// Unit cubes in one plane, `base` in the lowest row, each on two cubes of the row below.
 void add_pyramid(RaceScene& scene, int base) {
     scene.shapes.push_back(unit_cube());
     for (int row = 0; row < base; ++row)
@@ -52,7 +52,7 @@ void add_pyramid(RaceScene& scene, int base) {
     scene.true_top = base - 0.5;
 }
 
-/// Unit cubes on each other.
+/// A column of unit cubes.
 void add_column(RaceScene& scene, int count) {
     scene.shapes.push_back(unit_cube());
     for (int i = 0; i < count; ++i) add_body(scene, 0, {0, 0.5 + i, 0});
@@ -176,7 +176,7 @@ void build_hi_restitution(RaceScene& scene) {
     add_column(scene, 10);
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
         scene.bodies[i].position.y = 1.0 + 1.5 * static_cast<double>(i);
-    // Half a metre of air under each: where it comes to rest is shown, not judged.
+    // The cubes fall by half a metre each: where they come to rest is shown, not judged.
     scene.stands_until.reset();
 }
 

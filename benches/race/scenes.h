@@ -25,14 +25,14 @@ struct StaticBox {
     Vec3 half_extents, position;  ///< m
 };
 
-/// Ground of triangles, 1 m squares centred on the origin, each cut from (x+1, z) to (x, z+1).
+/// Ground of triangles: squares of 1 m, centred on the origin, each divided from (x+1, z) to (x, z+1).
 struct Terrain {
-    int cells = 0;  ///< a side; 0: no terrain
+    int cells = 0;  ///< cells per side; 0: no terrain
     std::vector<Vec3> vertices;
-    std::vector<int> indices;  ///< three a triangle, counter-clockwise seen from above
+    std::vector<int> indices;  ///< three per triangle, counter-clockwise seen from above
 };
 
-/// What happens before the step number `frame`.
+/// A change before the step number `frame`.
 struct RaceEvent {
     int frame = 0;
     std::optional<RaceBody> spawned;  ///< a new body, or else …
@@ -43,7 +43,7 @@ struct RaceEvent {
 /// One scene of the race, the same for every engine: friction 0.5, steps of 1/60 s, gravity 9.81 m/s², no damping.
 struct RaceScene {
     std::string name;
-    std::string what;  ///< for people
+    std::string what;  ///< description
     std::vector<RaceShape> shapes;
     std::vector<RaceBody> bodies;
     std::vector<StaticBox> statics;
@@ -53,11 +53,11 @@ struct RaceScene {
     double restitution = 0;
     int steps = 600;
 
-    // What must be so.
+    // Conditions that a correct run fulfils.
     double pen_half_width = 0;        ///< of the pen that holds all bodies, m; 0: none
     double pen_height = 0;            ///< m
     std::optional<int> stands_until;  ///< the structure stands before this frame (or to the end, if later)
-    std::optional<double> true_top;   ///< height of the highest centre at rest, if nothing sinks or falls, m
+    std::optional<double> true_top;   ///< height of the highest centre at rest without sinking and falling, m
 };
 
 inline constexpr double race_time_step = 1.0 / 60;  ///< s

@@ -17,7 +17,7 @@ Vec3 area_vector(const RaceShape& shape, const std::array<int, 3>& t) {
     return cross(corner(shape, t[1]) - corner(shape, t[0]), corner(shape, t[2]) - corner(shape, t[0]));
 }
 
-/// Keeps the direction of `v` unless it is there already; a line has no sign.
+/// Adds the direction of `v` unless it is in the list; a line has no sign.
 void add_direction(std::vector<Vec3>& directions, Vec3 v, bool is_line) {
     if (length(v) < 1e-12) return;
     const Vec3 unit = v * (1 / length(v));
@@ -28,7 +28,7 @@ void add_direction(std::vector<Vec3>& directions, Vec3 v, bool is_line) {
     directions.push_back(unit);
 }
 
-/// Volume by tetrahedra from the origin; moves the vertices so that the centroid becomes the origin.
+/// Volume as the sum of tetrahedra with the origin; translates the vertices so that the centroid becomes the origin.
 void centre(RaceShape& shape) {
     double volume = 0;
     Vec3 centroid;
@@ -43,7 +43,7 @@ void centre(RaceShape& shape) {
     shape.volume = volume;
 }
 
-/// Inertia at unit density: the second moments of the tetrahedra from the origin.
+/// Inertia at unit density: the second moments of the tetrahedra with the origin.
 void add_inertia(RaceShape& shape) {
     Mat3 moments = Mat3::zero();
     for (const auto& t : shape.triangles) {
@@ -54,14 +54,14 @@ void add_inertia(RaceShape& shape) {
     shape.inertia = trace(moments) * Mat3::identity() - moments;
 }
 
-/// Edges where the surface bends, not the diagonals between coplanar triangles.
+/// Edges between faces of different normals, without the diagonals between coplanar triangles.
 void add_edges(RaceShape& shape) {
     for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
         for (std::size_t j = i + 1; j < shape.triangles.size(); ++j) {
             const auto &first = shape.triangles[i], &second = shape.triangles[j];
             const Vec3 n = normalized(area_vector(shape, first)), m = normalized(area_vector(shape, second));
             if (dot(n, m) > same_direction) continue;
-            // Neighbours pass their common edge in opposite directions.
+            // Adjacent triangles have their common edge in opposite directions.
             for (std::size_t e = 0; e < 3; ++e) {
                 const int a = first[e], b = first[(e + 1) % 3];
                 for (std::size_t f = 0; f < 3; ++f)
@@ -72,7 +72,7 @@ void add_edges(RaceShape& shape) {
     }
 }
 
-/// Everything that follows from vertices and triangles.
+/// Computes everything that follows from vertices and triangles.
 void finish_polytope(RaceShape& shape) {
     centre(shape);
     add_inertia(shape);
@@ -81,7 +81,7 @@ void finish_polytope(RaceShape& shape) {
     for (const Vec3 v : shape.vertices) shape.bound = std::max(shape.bound, length(v));
 }
 
-/// Triangles of the hull by trying all triples: a face has every other point on one side.
+/// Finds the triangles of the hull among all triples of points: a face has all other points on one side.
 void add_hull_triangles(RaceShape& shape) {
     const int count = static_cast<int>(shape.vertices.size());
     const auto add_if_face = [&](int a, int b, int c) {
@@ -154,7 +154,7 @@ RaceShape make_cylinder(double radius, double half_height) {
     }
     finish_polytope(shape);
 
-    // Mass and inertia are those of the true cylinder.
+    // Mass and inertia are the true cylinder's.
     const double height = 2 * half_height, side_moment = (3 * radius * radius + height * height) / 12;
     shape.volume = std::numbers::pi * radius * radius * height;
     shape.inertia = Mat3::diagonal(shape.volume * Vec3{side_moment, radius * radius / 2, side_moment});
@@ -168,7 +168,7 @@ RaceShape make_hull(SceneRandom& random, int count, double radius) {
         return Vec3{x, y, z};
     }();
 
-    // Points on a sphere well apart from each other, so that each one stays a vertex of the hull.
+    // Points on a sphere with a minimum distance from each other, so that each stays a vertex of the hull.
     while (static_cast<int>(shape.vertices.size()) < count) {
         const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
         const double from_centre = length({x, y, z});

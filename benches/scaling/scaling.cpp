@@ -23,12 +23,12 @@ using physics::BodyHandle;
 using physics::ShapeHandle;
 using physics::World;
 
-/// A scene's steps: those that bring it into its state, and those that are timed.
+/// Number of steps that bring a scene into its state, and of those that are timed.
 struct Plan {
     int before = 0, timed = 0;
 };
 
-// A heap's lowest layers lie and its upper ones still fall after one second.
+// After one second the lowest layers of the falling bodies are at rest and the upper ones still fall.
 Plan plan_of(Scene scene) {
     switch (scene) {
         case Scene::columns_awake:
@@ -68,14 +68,15 @@ Result<std::unique_ptr<World>> make_world(bool sleeping) {
     return world;
 }
 
-/// Columns side by side on a square: where the next body goes.
+/// Positions of columns side by side on a square.
 class Columns {
 public:
     Columns(int bodies, int height, double pitch)
         : height_(height),
           side_(static_cast<int>(std::ceil(std::sqrt(static_cast<double>(bodies) / height)))),
           pitch_(pitch) {}
-    /// Of body `i`; `rise` is the distance of two above each other, `lowest` the height of the first, m.
+    /// Position of body `i`; `rise` is the distance between two centres above each other, `lowest` the first one's
+    /// height, m.
     [[nodiscard]] Vec3 place(int i, double lowest, double rise) const {
         const int column = i / height_;
         return {(column % side_) * pitch_, lowest + (i % height_) * rise, (column / side_) * pitch_};
@@ -170,7 +171,7 @@ std::string_view what_of(Scene scene) {
 }
 
 Result<Cost> measure(Scene scene, int bodies) {
-    // What earlier worlds left goes back to the system, so that it is not taken for this one's.
+    // Memory of earlier worlds is returned to the system, so that it does not count as this one's.
     malloc_trim(0);
     const double memory_before = resident_kilobytes();
     auto world = make_world(scene != Scene::columns_awake && scene != Scene::heap_falling);

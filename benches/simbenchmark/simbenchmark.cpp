@@ -18,7 +18,7 @@ using physics::World;
 
 struct Scene {
     std::unique_ptr<World> world;
-    std::vector<BodyHandle> bodies;  ///< movable ones, in the order they were made
+    std::vector<BodyHandle> bodies;  ///< movable bodies, in the order of their creation
     double start_energy = 0;         ///< kinetic and potential, J
 };
 
@@ -62,14 +62,14 @@ Result<void> add_balls(Scene& scene, const Balls& balls, std::span<const Vec3> p
     return {};
 }
 
-// Rolling: 25 balls on a box that is pushed so hard that it slides; friction drags the balls along, which roll.
+// Rolling: 25 balls on a box that is pushed so hard that it slides; friction accelerates the balls, which roll.
 constexpr double box_mass = 10, ball_mass = 1, push = 150;     // kg, kg, N
-constexpr double friction_ground = 0.4, friction_balls = 0.8;  // of ground and box, box and balls
+constexpr double friction_ground = 0.4, friction_balls = 0.8;  // between ground and box, between box and balls
 constexpr int balls_a_side = 5;
 constexpr Vec3 push_direction{0.5, 0, 0.866025403784439};
 
 Result<Scene> make_rolling(double time_step) {
-    // Coefficients of the pairs are products: 0.5 · 0.8 and 1 · 0.8.
+    // A pair's friction is the product of the two coefficients: 0.5 · 0.8 and 1 · 0.8.
     constexpr double initial_penetration = 2e-5;  // m
     auto scene = make_world(time_step, make_material(0.5, 0));
     if (!scene) return scene;
@@ -91,11 +91,11 @@ Result<Scene> make_rolling(double time_step) {
     return scene;
 }
 
-/// Square of the difference in velocity from the analytic solution, of the box and of the first ball.
+/// Squared difference of the velocities from the analytic solution, of the box and of the first ball.
 double rolling_error(const Scene& scene, double time) {
     constexpr int balls = balls_a_side * balls_a_side;
     constexpr double ground = friction_ground * (box_mass + balls * ball_mass) * gravity;
-    // A solid ball that rolls on an accelerated floor takes 2/7 of its acceleration.
+    // A solid ball that rolls on an accelerated floor has 2/7 of the floor's acceleration.
     constexpr double each_ball = (push - ground) / box_mass / (3.5 / ball_mass + balls / box_mass);
     constexpr double box_acceleration = (push - ground - balls * each_ball) / box_mass;
     const Vec3 box = time * box_acceleration * push_direction;
@@ -124,7 +124,8 @@ double energy_error(const Scene& scene, double) {
     return difference * difference;
 }
 
-// 666: a cube of 6 × 6 × 6 balls. Theirs are moved by another generator, so the two differ by chance, too.
+// 666: a cube of 6 × 6 × 6 balls. SimBenchmark perturbs them by another random generator, so the errors differ by
+// chance, too.
 constexpr double small_radius = 0.1;  // m
 
 Result<Scene> make_666(double time_step, double lowest, double restitution) {
@@ -148,7 +149,7 @@ Result<Scene> make_666(double time_step, double lowest, double restitution) {
 Result<Scene> make_inelastic_666(double time_step) { return make_666(time_step, 0.101, 0); }
 Result<Scene> make_elastic_666(double time_step) { return make_666(time_step, 1.101, 1); }
 
-/// Sum of the squares of how deep balls are in each other and in the ground, m².
+/// Sum of the squared penetration depths between balls and with the ground, m².
 double penetration_error(const Scene& scene, double) {
     std::vector<Vec3> centers;
     for (const BodyHandle body : scene.bodies) centers.push_back(scene.world->center_of_mass(body));
@@ -170,7 +171,7 @@ const Published* AccuracyTest::published(double time_step) const {
 }
 
 std::span<const AccuracyTest> accuracy_tests() {
-    // Rolling: with each engine's own settings; Bullet told to iterate to the end comes to 7e-28.
+    // Rolling: each engine's own settings; Bullet with iterations until convergence has an error of 7e-28.
     static const std::vector<AccuracyTest> tests = {
         {.name = "rolling",
          .what = "25 balls on a box of 20 m that is pushed with 150 N",
@@ -219,7 +220,7 @@ Result<Accuracy> run_accuracy_test(const AccuracyTest& test, double time_step, s
     if (!scene) return scene.error();
     scene->start_energy = energy(*scene);
 
-    // As theirs: measured before each step, the first included.
+    // As in SimBenchmark the error is measured before each step, including the first.
     Accuracy result{.steps = static_cast<int>(std::lround(seconds.value_or(test.seconds) / time_step))};
     for (int i = 0; i < result.steps; ++i) {
         result.error += test.measure(*scene, i * time_step) / result.steps;

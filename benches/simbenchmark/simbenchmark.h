@@ -9,10 +9,10 @@
 #include "foundation/result.h"
 
 // Four of the accuracy tests of SimBenchmark: Hwangbo, Kang et al., github.com/leggedrobotics/SimBenchmark, 2018,
-// commit 3fd1764. Their z is our y. The smaller the error, the better.
+// commit 3fd1764. Its z axis is our y axis. A smaller error is better.
 namespace embody::simbenchmark {
 
-/// The least error that they published for this time step, of RaiSim, Bullet, ODE, MuJoCo and DART.
+/// The smallest error that they published for this time step, of RaiSim, Bullet, ODE, MuJoCo and DART.
 struct Published {
     double time_step = 0;  ///< s
     double error = 0;
@@ -24,15 +24,15 @@ struct Scene;
 
 struct AccuracyTest {
     std::string_view name;
-    std::string_view what;          ///< the scene, for people
-    std::string_view error;         ///< what is measured, for people
-    std::string_view unit;          ///< of the error
-    double seconds = 0;             ///< simulated
+    std::string_view what;          ///< description of the scene
+    std::string_view error;         ///< description of the error
+    std::string_view unit;          ///< unit of the error
+    double seconds = 0;             ///< simulated time
     std::vector<Published> best{};  ///< time steps without a published error are left out
     Result<Scene> (*make)(double time_step) = nullptr;
-    double (*measure)(const Scene& scene, double time) = nullptr;  ///< before the step at `time`, s
+    double (*measure)(const Scene& scene, double time) = nullptr;  ///< called before the step at `time`, s
 
-    /// Null where they published none.
+    /// Null where none was published.
     [[nodiscard]] const Published* published(double time_step) const;
 };
 
@@ -49,8 +49,8 @@ std::span<const AccuracyTest> accuracy_tests();
 /// Null for an unknown name.
 const AccuracyTest* find_accuracy_test(std::string_view name);
 
-/// Runs a test with this time step, s, for its own time or for `seconds`; sleep is off, all else as Embody comes. An
-/// error that is no number is an answer, too: a wrong one.
+/// Runs a test with this time step, s, for its own duration or for `seconds`; sleeping is off, all other settings are
+/// the defaults. An error that is not a number is a valid result, though a wrong one.
 Result<Accuracy> run_accuracy_test(const AccuracyTest& test, double time_step,
                                    std::optional<double> seconds = std::nullopt);
 

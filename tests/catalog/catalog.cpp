@@ -99,7 +99,7 @@ TEST_F(CatalogTest, AManualAttributeSurvivesReimportRemovalAndReturn) {
     ASSERT_TRUE(import());
     EXPECT_EQ(mass(*catalog, catalog->model(key)->id), 17.5);
 
-    // Gone and back, with the first content and so under the first key.
+    // A model that is removed and imported again with its first content gets its first key.
     ASSERT_TRUE(catalog->remove(catalog->model(key)->id));
     EXPECT_FALSE(catalog->model(key));
     write_model("office_chair.obj", std::string(80, 'x'));
@@ -133,7 +133,7 @@ TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
         ASSERT_TRUE(catalog);
         ASSERT_TRUE((*catalog)->set_attribute((*catalog)->model("office chair")->id, "mass", 17.5));
     }
-    // Whatever was stored is replaced, as the damaged row shows.
+    // Every stored value is replaced, as the damaged row shows.
     auto connection = database::open_model_database(database());
     ASSERT_TRUE(connection);
     ASSERT_TRUE((*connection)->execute("UPDATE model_knowledge SET automatic = '[]'"));
@@ -149,7 +149,7 @@ TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
     EXPECT_EQ(mass(**changed, id), 17.5);
 }
 
-// The user's own categories lie over ours: a file that comes, changes or goes is a change of the taxonomy.
+// The user's own categories extend ours: a file that is added, changed or removed changes the taxonomy.
 TEST_F(CatalogTest, AChangedOverlayResolvesAgainAndKeepsWhatPersonsSet) {
     const std::filesystem::path own = folder_ / "own taxonomy";
     const auto write = [&](const std::string& mass) {
@@ -185,12 +185,12 @@ TEST_F(CatalogTest, AChangedOverlayResolvesAgainAndKeepsWhatPersonsSet) {
         const auto catalog = with_overlay();
         EXPECT_NEAR(automatic_mass(*catalog, "office chair"), 2 * heavy, 1e-6 * heavy);
         EXPECT_EQ(mass(*catalog, catalog->model("office chair")->id), 17.5);
-        // What persons did stays on record, and can be taken back to the value of now.
+        // Persons' changes stay in the history, and can be undone to the present automatic value.
         ASSERT_EQ(catalog->history({})->size(), 2u);
         ASSERT_TRUE(catalog->undo_changes(catalog->history({})->front().batch));
         EXPECT_NEAR(mass(*catalog, catalog->model("office chair")->id), 2 * heavy, 1e-6 * heavy);
     }
-    // A broken file is named and nothing is resolved; without the files all is as it was.
+    // A broken file is named and nothing is resolved; without the files everything is as before.
     write("[3, 2, 1]");
     const auto broken = Catalog::open(database(), taxonomy_folder, {}, own);
     ASSERT_FALSE(broken);
@@ -231,7 +231,8 @@ TEST_F(CatalogTest, ResolvingAnewGoesOnWhereItWasStopped) {
     };
     const std::int64_t all = unresolved();
 
-    // Stopped after the first batch: that is kept, and the rest follows, though the taxonomy may go back and forth.
+    // Stopped after the first batch: its results are kept, and the rest is resolved later, even if the taxonomy changes
+    // back and forth.
     const auto stopped = Catalog::open(database(), own, {.progress = [](std::size_t, std::size_t) { return false; }});
     ASSERT_FALSE(stopped);
     EXPECT_EQ(unresolved(), all - 512);
@@ -283,7 +284,7 @@ TEST_F(CatalogTest, ComesWithThePrimitivesAndTheirFormulas) {
     EXPECT_NEAR(volume("primitive:cylinder"), 0.7853982, 1e-7);
     EXPECT_NEAR(volume("primitive:cone"), 0.2617994, 1e-7);
 
-    // Removed by a person means removed.
+    // A model that a person removed does not come back.
     ASSERT_TRUE((*catalog)->remove((*catalog)->model("primitive:cone")->id));
     catalog = Catalog::open(folder_ / "new.sqlite", taxonomy_folder);
     EXPECT_EQ((*catalog)->model_count(), 5);

@@ -35,7 +35,7 @@ TEST(Collection, ADescriptionOfOnesOwnIsReadStrictly) {
     EXPECT_EQ(read->unit, 0.01);
     EXPECT_EQ(read->rotation[5], 1);  // up, the second row, is what was the third axis
 
-    // What is wrong is named with its field.
+    // Each error names its field.
     for (const auto& [text, field] : {std::pair{begin + "\"x\"}", "up"},
                                       {begin + "\"y\", \"units\": 1}", "units"},
                                       {std::string("{}"), "name"},
@@ -108,7 +108,7 @@ TEST_F(CollectionImport, ModelsHaveKeysCreditAndWhatTheyAreFromTheDescription) {
     EXPECT_EQ(relay->author, "Somebody");
     EXPECT_EQ(relay->category, "relay");
     EXPECT_TRUE(catalog->facts(relay->id)->size_is_stated);
-    // The place is believed before the name.
+    // The file's folder has precedence over its name.
     const auto coach = catalog->model("relays:Coaches/Diesel.OBJ");
     ASSERT_TRUE(coach) << coach.error().message();
     EXPECT_EQ(coach->category, "train");

@@ -94,7 +94,7 @@ TEST_F(ImportTest, AChangedFileGoesOnBeingTheSameModel) {
     EXPECT_EQ(after.id, before.id);
     EXPECT_NE(after.content_hash, before.content_hash);
 
-    // Back again: the old content is not taken for stored.
+    // The old content again: it is not taken for stored.
     write_model("chair.obj", std::string(80, 'x'));
     EXPECT_EQ(import()->updated, 1u);
     EXPECT_EQ(catalog->model("chair")->content_hash, before.content_hash);
@@ -120,7 +120,7 @@ TEST_F(ImportTest, AgainPreparesWhatIsUnchanged) {
     EXPECT_EQ(report->updated, 1u);
 }
 
-// Found by tools/soak.sh: each import put the index of words two levels higher, and SQLite 3.40 takes one of 2000
+// Found by tools/soak.sh: each import put the full-text index two levels higher, and SQLite 3.40 takes one of 2000
 // levels for damaged. The number of levels follows four bytes at the start of FTS5's structure record.
 TEST_F(ImportTest, ManyImportsLeaveTheIndexOfWordsFlat) {
     const auto connection = database::open_model_database(database());
@@ -134,7 +134,7 @@ TEST_F(ImportTest, ManyImportsLeaveTheIndexOfWordsFlat) {
         std::filesystem::remove(models() / name);
         if (i > 0) continue;
 
-        // A small index never grows.
+        // A small index does not grow in levels.
         std::string words;
         for (int k = 0; k < 3000; ++k) words += "tag" + std::to_string(k) + "\n";
         ASSERT_TRUE((*connection)->execute("UPDATE model SET tags = '" + words + "'"));
@@ -221,7 +221,7 @@ TEST_F(ImportTest, LinksThatLeaveTheFolderAreNotFollowed) {
     ASSERT_EQ(report->failures.size(), 1u);
     EXPECT_EQ(report->failures[0].path, (models() / "leaves.obj").string());
     EXPECT_EQ(report->failures[0].error.why, "is a symbolic link that leaves the imported folder");
-    // Named by a person, a link is followed.
+    // A link that a person names is followed.
     EXPECT_EQ(import({models() / "leaves.obj"})->added, 1u);
 }
 
@@ -232,7 +232,7 @@ TEST_F(ImportTest, AKillLosesNothingThatWasDone) {
         const pid_t child = fork();
         ASSERT_GE(child, 0);
         if (child == 0) {
-            // Dies without a word while it works on a model, in the middle of whatever the database does.
+            // Is killed while it works on a model, during any operation of the database.
             std::size_t count = 0;
             (void)import({models()}, {}, [&](const auto& items, const auto& done) -> Result<void> {
                 for (std::size_t i = 0; i < items.size(); ++i) {
@@ -292,7 +292,7 @@ TEST_F(ImportTest, TwoImportsAtOnceMakeEachModelOnceWhileOthersRead) {
             test::end_child(report && report->failures.empty() ? 0 : 1);
         }
     }
-    // Two readers see a growing, always whole catalogue and are never turned away.
+    // Two readers see a growing, always consistent catalogue and are never refused.
     std::atomic<bool> importing = true;
     std::atomic<int> refused = 0, shrunk = 0;
     const auto read = [&] {

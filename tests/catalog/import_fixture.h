@@ -22,8 +22,8 @@ inline void write_file(const std::filesystem::path& file, const std::string& tex
     std::ofstream(file, std::ios::binary) << text;
 }
 
-/// A box whose edge, in centimetres, is the length of the file's text: quick to prepare, and tells which content was
-/// read.
+/// A box whose edge, in centimetres, is the length of the file's text: quick to prepare, and its size shows which
+/// content was read.
 inline Result<PreparedModel> prepare_box(const ImportItem& item) {
     std::ostringstream text;
     text << std::ifstream(item.path, std::ios::binary).rdbuf();

@@ -42,7 +42,7 @@ protected:
     Result<ChangeReport> set_chairs(double mass, const ChangeOptions& options = {}) const {
         return catalog_->change_attributes(SearchQuery{.words = "chair", .limit = 1}, {{"mass", mass}}, options);
     }
-    /// Runs `act` in a process of its own, with a catalogue of its own; gives how that ended.
+    /// Runs `act` in a process of its own, with a catalogue of its own; returns the process's exit status.
     template <class Act>
     pid_t start(const Act& act) const {
         const pid_t child = fork();
@@ -105,7 +105,7 @@ TEST_F(ManualChangesTest, AnAttributeThatDoesNotConcernAModelStopsAllOrIsSkipped
     EXPECT_EQ(skipped->models.size(), 1u);
     EXPECT_EQ(manual("cushion", "youngs_modulus"), 1e5);
 
-    // It concerns a chair that becomes soft in the same act.
+    // The other attribute applies to a chair that becomes soft in the same change.
     const std::vector<std::int64_t> chair = {catalog_->model("chair a")->id};
     ASSERT_TRUE(
         catalog_->change_attributes(chair, {{"kind", to_value(attributes::PhysicalKind::soft)}, softness.front()}));
@@ -164,7 +164,7 @@ TEST_F(ManualChangesTest, ProcessesThatChangeAtOnceComeOneAfterTheOther) {
     }
     for (const pid_t child : children) EXPECT_EQ(end_of(child), 0);
     catalog_ = open();
-    // Every act changed all chairs or none was needed, and each found what the one before it left.
+    // Every change affected all chairs or was not needed, and each saw the result of the one before it.
     const auto history = catalog_->history({.limit = 10'000});
     EXPECT_EQ(history->size(), 20 * chairs);
     std::map<std::string, attributes::AttributeValue> present;
@@ -187,7 +187,7 @@ TEST_F(ManualChangesTest, TheHistoryTellsWhoChangedWhatAndOutlivesTheModel) {
     ASSERT_TRUE(catalog_->set_attribute(model->id, "mass", 4.0));
     ASSERT_TRUE(catalog_->set_attribute(model->id, "mass", 5.0));
     ASSERT_TRUE(catalog_->reset_attribute(model->id, "mass"));
-    ASSERT_TRUE(catalog_->reset_attribute(model->id, "mass"));  // nothing to change: nothing to tell
+    ASSERT_TRUE(catalog_->reset_attribute(model->id, "mass"));  // nothing to change, so nothing is recorded
     ASSERT_TRUE(catalog_->remove(model->id));
     const auto history = catalog_->history({.model_key = model->key});
     ASSERT_TRUE(history);
@@ -202,7 +202,7 @@ TEST_F(ManualChangesTest, TheHistoryTellsWhoChangedWhatAndOutlivesTheModel) {
     EXPECT_EQ(history->back().before, std::nullopt);
     EXPECT_EQ(catalog_->history({.since = last.made_at + 1000})->size(), 0u);
 
-    // What it left is there when the model returns; so is the way back.
+    // The model's change is there when it returns, and can still be undone.
     ASSERT_TRUE(catalog_->undo_changes(last.batch));
     ASSERT_TRUE(import({models()}));
     EXPECT_EQ(manual("chair b"), 5.0);
@@ -225,10 +225,10 @@ TEST_F(ManualChangesTest, UndoRestoresValueAuthorAndTime) {
     EXPECT_EQ(undone->command, "undo");
     EXPECT_EQ(catalog_->attributes(id)->find("mass")->source, source);
     EXPECT_EQ(manual("chair b"), std::nullopt);
-    EXPECT_FALSE(catalog_->undo_changes(batch->batch));  // it is undone
-    EXPECT_FALSE(catalog_->undo_changes(0));             // the rest is ada's
+    EXPECT_FALSE(catalog_->undo_changes(batch->batch));  // already undone
+    EXPECT_FALSE(catalog_->undo_changes(0));             // the other changes are ada's
 
-    // To undo the undo is to do it again, as often as one likes.
+    // The undo of an undo applies the change again, any number of times.
     const auto redone = catalog_->undo_changes(undone->batch);
     ASSERT_TRUE(redone);
     EXPECT_EQ(redone->command, "redo");
@@ -248,7 +248,7 @@ TEST_F(ManualChangesTest, UndoRefusesWhatWasChangedSince) {
     EXPECT_EQ(refused->refused.front().name, "chair c");
     EXPECT_EQ(refused->batch, 0);
     EXPECT_EQ(chairs_of(5), chairs - 1);
-    // Once that is taken back, nothing is in the way; and then the later one has lost its ground.
+    // After the later change is undone, the earlier one can be undone; then the later one cannot be redone.
     const auto later = catalog_->undo_changes(0);
     ASSERT_TRUE(later);
     EXPECT_NE(catalog_->undo_changes(first->batch)->batch, 0);

@@ -21,7 +21,7 @@ TEST(SoftMesh, CountFollowsTheFormNotTheSize) {
         EXPECT_NEAR(geometry::volume(cube->mesh) / (size * size * size), 1, 0.08);
         EXPECT_EQ(cube->left_out, 0u);
     }
-    // A mattress would need more than the most for two cells across.
+    // A mattress with two cells across would need more tetrahedra than the maximum.
     const auto mattress = make_soft_mesh(box({2, 0.2, 0.9}));
     ASSERT_TRUE(mattress) << mattress.error().message();
     EXPECT_GT(mattress->mesh.tetrahedra.size(), 1300u);
@@ -62,7 +62,7 @@ TEST(SoftMesh, WhatCannotBeSoftSaysWhy) {
 
     EXPECT_FALSE(make_soft_mesh(box({2, 0.001, 2}))) << "cells of millimetres on two metres";
 
-    // Three boxes apart; a crumb beside one of them goes along with it.
+    // Three separate boxes; a small part beside one of them moves along with it.
     geometry::TriangleMesh three;
     const auto add = [&](Vec3 at, double size) {
         const auto first = static_cast<std::uint32_t>(three.positions.size());
@@ -103,7 +103,7 @@ TEST(SoftMesh, ComesBackFromItsStoredFormBitForBit) {
     EXPECT_EQ(problem.error().why, "its surface encloses nothing");
     EXPECT_EQ(problem.error().remedy, "make it rigid");
 
-    // Cut short, or with a node that is none.
+    // Truncated, or with an invalid node.
     for (std::size_t size = 0; size < stored.mesh.size(); size += 997) {
         database::StoredSimulationMesh cut = stored;
         cut.mesh.resize(size);
@@ -137,7 +137,7 @@ TEST_F(StoredSoftMesh, IsMadeAtTheImportOfSoftModelsAndElseWhenItIsNeeded) {
     EXPECT_NEAR(geometry::volume(mesh->mesh), 0.4 * 0.4 * 0.4, 0.005);
     EXPECT_EQ(stored(), 1);
 
-    // A person makes the chair soft: there is one at once, and it is the one that is asked for later.
+    // A person makes the chair soft: its mesh is made at once and is the one that is returned later.
     ASSERT_TRUE(catalog->set_attribute(chair->id, "kind", to_value(attributes::PhysicalKind::soft)));
     EXPECT_EQ(stored(), 2);
     const auto first = catalog->soft_mesh(chair->id);
@@ -146,7 +146,7 @@ TEST_F(StoredSoftMesh, IsMadeAtTheImportOfSoftModelsAndElseWhenItIsNeeded) {
     EXPECT_EQ(stored(), 2);
     EXPECT_FALSE(catalog->soft_mesh(999'999));
 
-    // Another geometry forgets it; damaged ones and those of another rule are made again.
+    // New geometry removes the mesh; damaged meshes and those of another version are made again.
     write_model("office_chair.obj", std::string(60, 'x'));
     ASSERT_TRUE(import());
     EXPECT_NEAR(geometry::volume(catalog->soft_mesh(chair->id)->mesh), 0.6 * 0.6 * 0.6, 0.02);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tables of what persons changed and where models came from: what is put in comes out, in order and by search, and
-// a database without them is told of by every call.
+// The tables of persons' changes and of the models' origins: rows are read as they were written, in order and by
+// search, and every call reports a database without these tables.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -83,8 +83,8 @@ TEST(Connection, RefusesAFileBelowAFile) {
     EXPECT_NE(connection.error().where.find("below"), std::string::npos);
 }
 
-/// What `look` returns as somebody who may not write what this process makes: the administrator may write everywhere.
-/// "" is well.
+/// The result of `look` as a user who may not write this process's files, because the administrator may write
+/// everywhere. "" means success.
 std::string as_another_person(const std::function<std::string()>& look) {
     int ends[2];
     EXPECT_EQ(pipe(ends), 0);
@@ -104,7 +104,7 @@ std::string as_another_person(const std::function<std::string()>& look) {
     return told;
 }
 
-/// Reads `rows` rows from the table `letter`, and is told by name that it cannot be written.
+/// Reads `rows` rows from the table `letter`; writing must fail with an error that names the file.
 std::string read_only_fault(const std::filesystem::path& file, std::int64_t rows) {
     const auto connection = Connection::open(file, ours);
     if (!connection) return connection.error().message();
@@ -118,7 +118,7 @@ std::string read_only_fault(const std::filesystem::path& file, std::int64_t rows
 }
 
 TEST(Connection, AReadOnlyFileIsReadAndTellsWhoWritesIt) {
-    // Names that mean something in a URI are names all the same.
+    // Characters with a meaning in a URI are allowed in names.
     for (const char* name : {"models.sqlite", "50%25 of #1?mode=rw.sqlite"}) {
         for (const mode_t folder_mode : {0777, 0555}) {
             for (const mode_t file_mode : {0444, 0666}) {
@@ -160,7 +160,7 @@ TEST(Connection, TellsAReadOnlyFileWhoseLastChangesAreInItsLog) {
         const auto owner = Connection::open(folder / "models.sqlite", ours);
         ASSERT_TRUE(owner);
         ASSERT_TRUE((*owner)->execute("CREATE TABLE letter (number); INSERT INTO letter VALUES (1)"));
-        // As a killed program leaves them.
+        // The files as a killed program leaves them.
         std::filesystem::copy_file(folder / "models.sqlite", folder / "killed.sqlite");
         std::filesystem::copy_file(folder / "models.sqlite-wal", folder / "killed.sqlite-wal");
     }
@@ -181,7 +181,7 @@ TEST(Connection, TellsADamagedFile) {
         ASSERT_TRUE(insert);
         ASSERT_TRUE(insert->bind(std::string_view(std::string(200'000, 'x'))).run());
     }
-    // Everything behind the first page becomes noise.
+    // Everything after the first page becomes random.
     std::string bytes = bytes_of(folder / "models.sqlite");
     ASSERT_GT(bytes.size(), 40'000u);
     for (std::size_t i = 8192; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 31);
@@ -315,7 +315,7 @@ TEST(Migrations, OfAReadOnlyFileAreTold) {
     EXPECT_NE(told.find("is read-only"), std::string::npos) << told;
 }
 
-// The last step changes no table: a file that cannot be changed is read without it.
+// The last migration changes no table: a file that cannot be written is read without it.
 TEST(Migrations, OfAReadOnlyFileAreLeftOutWhereReadingNeedsNone) {
     TemporaryFolder folder;
     {

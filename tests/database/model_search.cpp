@@ -104,7 +104,7 @@ TEST_F(ModelSearchTest, WholeWordsInTheNameComeFirst) {
 TEST_F(ModelSearchTest, PrefixesPluralsAndAccentsMatch) {
     EXPECT_EQ(find("armch"), "a");
     EXPECT_EQ(find("chairs").front(), 'b');
-    EXPECT_EQ(find("shelf"), "");  // the stemmer knows no irregular plural
+    EXPECT_EQ(find("shelf"), "");  // the stemmer does not know irregular plurals
     EXPECT_EQ(find("shelve"), "f");
     EXPECT_EQ(find("cafe"), "d");
     EXPECT_EQ(find("CAFÉ"), "d");
@@ -136,7 +136,7 @@ TEST_F(ModelSearchTest, PagesJoinToTheWholeInOrder) {
 }
 
 TEST_F(ModelSearchTest, AmongVeryManyTheNameThatFitsBestComesFirst) {
-    // Enough to be ordered by name: 2,000 that only the tag finds, and five whose names fit the more, the later added.
+    // Enough rows to be ordered by name: 2,000 that only the tag finds, and five whose names match better, added later.
     auto transaction = Transaction::begin(*connection_);
     ASSERT_TRUE(transaction);
     const std::vector<std::uint8_t> bytes{1};
@@ -188,7 +188,7 @@ TEST_F(ModelSearchTest, TheSameBytesAreStoredOnceAndGoWithTheLastModel) {
     EXPECT_EQ(stored("stored_picture"), 1);
     EXPECT_EQ(*models_->geometry(*armchair), other);
 
-    // A model like another one keeps the bytes when the other one goes.
+    // A model with the same geometry keeps it when the other model is removed.
     row.key = "like a";
     {
         auto undone = Transaction::begin(*connection_);
@@ -215,10 +215,10 @@ TEST_F(ModelSearchTest, TheIndexFollowsChangesAndRemoval) {
     EXPECT_TRUE(connection_->check_integrity());
 }
 
-// What version 5 did at the end of each import, until SQLite 3.40 takes the index for damaged (later ones do not).
+// Version 5 did this at the end of each import, until SQLite 3.40 takes the index for damaged (later versions do not).
 TEST_F(ModelSearchTest, AnIndexThatWasMergedTooOftenIsRebuilt) {
     const std::string merge = "INSERT INTO model_words (model_words) VALUES ('optimize')";
-    std::vector<std::string> words;  // a small index never grows
+    std::vector<std::string> words;  // a small index does not grow in levels
     for (int i = 0; i < 3000; ++i) words.push_back("tag" + std::to_string(i));
     add("h", "Many", "seating", words);
     for (int i = 0; i < 2200; ++i) {

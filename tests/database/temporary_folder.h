@@ -9,7 +9,7 @@
 
 namespace embody::test {
 
-/// A folder of its own for one test, gone afterwards.
+/// A folder for one test, removed at its end.
 class TemporaryFolder {
 public:
     TemporaryFolder() {

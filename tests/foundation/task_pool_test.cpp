@@ -30,7 +30,7 @@ TEST(TaskPool, TakesNoMoreWorkersThanTheMachineHasThreads) {
 }
 
 TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {
-    // Longer apart than the threads look out for the next task, so that they sleep and must be woken.
+    // Tasks with longer pauses than the threads wait actively for the next one, so that they sleep and must be woken.
     TaskPool pool(GetParam());
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
     const auto count = [&](int worker) { ++calls[static_cast<std::size_t>(worker)]; };
@@ -47,7 +47,7 @@ TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {
 }
 
 TEST_P(EachPool, WorkersMeetAtTheBarrier) {
-    // Each adds to its neighbour's number in turns; without the barrier sums would be lost.
+    // Each worker adds to its neighbour's number in turns; without the barrier additions would be lost.
     const int workers = GetParam();
     TaskPool pool(workers);
     Barrier barrier(workers);

@@ -91,7 +91,7 @@ TEST(Zones, MoreThanThereIsRoomForAreDroppedAndCounted) {
     EXPECT_EQ(recording.dropped(), 12u);
 }
 
-// The zone that a task is run in is on the track of every worker.
+// The zone in which a task runs is recorded on the track of every worker.
 TEST(Zones, WorkersHaveTracksOfTheirOwn) {
     constexpr int workers = 3, rounds = 50;
     ZoneRecording recording;
@@ -111,7 +111,7 @@ TEST(Zones, WorkersHaveTracksOfTheirOwn) {
     EXPECT_TRUE(count.contains("worker 2"));
 }
 
-// Threads write while another one takes: each zone is taken or counted as dropped, once.
+// Threads write while another thread takes: each zone is either taken once or counted as dropped.
 TEST(Zones, AreTakenWhileThreadsGoOn) {
     constexpr int threads = 3, zones = 20000;
     ZoneRecording recording(64);

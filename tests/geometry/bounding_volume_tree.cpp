@@ -59,7 +59,7 @@ TEST(BoundingVolumeTree, ManyEqualBoxesAreAllFound) {
 }
 
 TEST(BoundingVolumeTree, UnevenSpacingDoesNotOverflowTheDepth) {
-    // Geometric spacing: almost every binned split takes off a single leaf.
+    // Geometric spacing: almost every binned split separates a single leaf.
     std::vector<Bounds> boxes;
     for (int i = 0; i < 2000; ++i) {
         const double x = std::pow(10, -30 + 0.03 * i);
@@ -83,7 +83,7 @@ TEST(BoundingVolumeTree, BoxQueryFindsWhatASearchOfAllFinds) {
         for (std::uint32_t k = 0; k < boxes.size(); ++k) {
             if (overlaps(boxes[k], box)) expected.push_back(k);
         }
-        // Rounding outwards may add a leaf that misses by a float's last digit, never lose one.
+        // Outward rounding may add a leaf that misses by a float's last digit, but never loses one.
         EXPECT_TRUE(std::includes(seen.begin(), seen.end(), expected.begin(), expected.end()));
         EXPECT_LE(seen.size(), expected.size() + 2);
     }

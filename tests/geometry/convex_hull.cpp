@@ -24,7 +24,7 @@ std::vector<Vec3> points_of(const TriangleMesh& mesh) {
     return points;
 }
 
-// All that the header promises of any hull.
+// Checks all that the header promises for any hull.
 void expect_sound(const ConvexHull& hull, std::span<const Vec3> points) {
     const Vec3 extent = bounds(hull).size();
     const double size = std::max({extent.x, extent.y, extent.z});

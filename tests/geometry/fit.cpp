@@ -18,7 +18,7 @@ ConvexHull hull_of(const TriangleMesh& mesh) {
     EXPECT_TRUE(hull.ok());
     return *std::move(hull);
 }
-// Capsule along Y: a sphere pulled apart in the middle.
+// Capsule along Y: a sphere that is stretched in the middle.
 TriangleMesh make_capsule(double radius, double half_height) {
     TriangleMesh mesh = make_sphere(radius, 24, 17);
     for (Vec3f& p : mesh.positions) p.y += float(p.y > 0 ? half_height : -half_height);
@@ -35,7 +35,8 @@ TEST(Fit, AxisAlignedBoxStaysAxisAligned) {
 }
 
 TEST(Fit, RotatedBrickIsABox) {
-    // The square cross-section leaves principal axes free; the faces' edges find them.
+    // The square cross-section leaves the principal axes undetermined; the directions of the faces' edges determine
+    // them.
     for (const Vec3 half : {Vec3{0.1, 0.05, 0.2}, Vec3{0.1, 0.1, 0.3}, Vec3{0.1, 0.1, 0.1}}) {
         const auto fit = best_primitive(hull_of(moved(make_box(half), anywhere)));
         ASSERT_TRUE(fit.has_value());

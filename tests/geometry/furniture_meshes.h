@@ -5,7 +5,7 @@
 
 namespace embody::geometry {
 
-/// A line in the plane (radius, height), turned about the y axis.
+/// Surface of revolution of a line in the plane (radius, height) about the y axis.
 inline TriangleMesh make_turned(const std::vector<std::array<double, 2>>& line, int columns = 32) {
     const int rows = static_cast<int>(line.size()) - 1;
     return make_grid(columns, rows, [&](double u, double v) {

@@ -67,7 +67,7 @@ inline TriangleMesh make_torus(double ring, double tube, int columns = 64, int r
     });
 }
 
-/// Each triangle with vertices of its own, as many real files have them.
+/// A copy in which each triangle has its own vertices, as in many real files.
 inline TriangleMesh make_soup(const TriangleMesh& mesh) {
     TriangleMesh soup;
     for (const auto& triangle : mesh.triangles) {

@@ -28,7 +28,7 @@ TEST(IntegrateShell, OfASphereIsTwoThirdsOfMassTimesRadiusSquared) {
 }
 
 TEST(IntegrateShell, OfABoxIsThatOfItsSixPlates) {
-    // Each plate a × b as a rectangle of its own, moved to its place.
+    // Each plate a × b as a rectangle, moved to its place.
     const Vec3 half{1, 2, 3};
     const auto plate = [](double a, double b, Vec3 normal_axis, Vec3 at) {
         MassProperties p;
@@ -67,7 +67,7 @@ TEST(IntegrateSolidAndShell, AFlatOpeningIsClosedExactly) {
 }
 
 TEST(IntegrateSolidAndShell, ATubeOpenAtBothEndsCountsBothRims) {
-    // Lateral surface 2πrh against ends of 2πr²: narrow ends leave it a solid, wide ones a sheet.
+    // Lateral surface 2πrh against ends of 2πr²: with narrow ends the tube is a solid, with wide ones a sheet.
     const auto tube = [](double radius, double height) {
         return weld(
             make_grid(64, 4,

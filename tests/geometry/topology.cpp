@@ -42,8 +42,8 @@ TEST(Weld, ClosesGapsUpToTheToleranceOnly) {
 TEST(Weld, DropsDegenerateAndCopiedTriangles) {
     TriangleMesh mesh = make_box({1, 1, 1});
     mesh.triangles.push_back({0, 0, 1});
-    mesh.triangles.push_back({2, 3, 0});  // the first, begun elsewhere
-    mesh.triangles.push_back({0, 3, 2});  // the first, turned around
+    mesh.triangles.push_back({2, 3, 0});  // the first triangle, beginning at another corner
+    mesh.triangles.push_back({0, 3, 2});  // the first triangle, reversed
     EXPECT_EQ(weld(mesh, 0).triangles.size(), 12u);
 }
 

@@ -12,7 +12,7 @@
 namespace embody::geometry {
 namespace {
 
-// The estimate is within the error that it states itself.
+// Checks that the estimate is within its own stated error.
 void expect_honest(const VolumeEstimate& estimate, double true_volume) {
     EXPECT_LE(std::abs(estimate.solid.volume / true_volume - 1), estimate.relative_error)
         << estimate.solid.volume << " for " << true_volume;

@@ -29,7 +29,7 @@ TEST(Archive, SurvivesTruncationAtEveryLength) {
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         const auto archive = Archive::open(scratch.write("cut.zip", bytes.substr(0, length)));
-        // Where the list still is found, the members must be refused or whole.
+        // Where the central directory is still found, members must be refused or complete.
         if (!archive) continue;
         const auto read = archive->read("b/c.txt");
         if (read) {
@@ -94,7 +94,7 @@ TEST(Archive, FindsMembersInAnyOrderAndCase) {
 
 TEST(Archive, NamesOfOldProgramsAreFoundAsTheyAreListed) {
     const ScratchFolder scratch;
-    // "Möbel/Stühle.obj" by code page 437, as UTF-8, and bytes that are neither sensibly.
+    // "Möbel/Stühle.obj" by code page 437, as UTF-8, and bytes that are valid in neither.
     const std::vector<std::string> stored{
         "M\x94"
         "bel/St\x81hle.obj",
@@ -109,7 +109,7 @@ TEST(Archive, NamesOfOldProgramsAreFoundAsTheyAreListed) {
         const std::string& listed = archive->members()[i].path;
         EXPECT_TRUE(is_utf8(listed)) << listed;
         EXPECT_EQ(archive->find(listed), listed);
-        EXPECT_EQ(archive->find(stored[i]), listed);  // as another member of the same archive names it
+        EXPECT_EQ(archive->find(stored[i]), listed);  // by the name that another member of the same archive uses
         EXPECT_TRUE(archive->read(listed));
     }
 }

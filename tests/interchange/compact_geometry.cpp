@@ -84,7 +84,7 @@ TEST(CompactGeometry, KeepsTheSolidToTheGridsStep) {
     EXPECT_EQ(mesh->positions.size(), stored->vertices);
     EXPECT_NEAR(stored->position_step, 5.0 / 65535, 1e-9);
 
-    // Each vertex within half a step of a sphere's surface, in every coordinate.
+    // Each vertex is within half a quantisation step of the sphere's surface, in every coordinate.
     for (const Vec3f p : mesh->positions) {
         const double radius = std::min(distance(to_vec3(p), {0, 1, 0}), distance(to_vec3(p), {3, 1, 0}));
         EXPECT_NEAR(radius, 1, stored->position_step);
@@ -104,7 +104,7 @@ TEST(CompactGeometry, IsSmallAndTheSameEveryTime) {
     scene.images.clear();
     const auto stored = encode(scene);
     ASSERT_TRUE(stored);
-    // Raw: 32 bytes a vertex and 12 a triangle.
+    // Uncompressed: 32 bytes per vertex and 12 per triangle.
     EXPECT_LT(stored->bytes.size(), (32 * stored->vertices + 12 * stored->triangles) / 4);
     EXPECT_EQ(stored->bytes, encode(scene)->bytes);
     EXPECT_EQ(stored->parts, 2u);
@@ -169,7 +169,7 @@ TEST(CompactGeometry, SurvivesDamagedBytes) {
     for (int trial = 0; trial < 3000; ++trial) {
         std::vector<std::uint8_t> damaged = stored->bytes;
         for (int k = 0; k < 3; ++k) damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
-        // What still decodes is a mesh that the geometry layer may take for granted.
+        // A mesh that still decodes is valid for the geometry layer.
         const auto mesh = decode_mesh(damaged);
         if (mesh) {
             EXPECT_TRUE(geometry::validate(*mesh));

@@ -5,7 +5,7 @@
 #include <png.h>
 
 #include <cstdio>
-// After <cstdio>, which it needs.
+// After <cstdio>, which jpeglib.h needs.
 #include <jpeglib.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// A PNG of these rows, as stored: `depth` bits a channel, big-endian.
+/// A PNG of these rows: `depth` bits per channel, big-endian.
 struct PngForm {
     png_uint_32 width = 0, height = 0;
     int depth = 8, color = PNG_COLOR_TYPE_RGB, interlace = PNG_INTERLACE_NONE;
@@ -44,7 +44,7 @@ Bytes png_of(const PngForm& form, Bytes rows) {
     if (!form.palette.empty()) png_set_PLTE(png, info, form.palette.data(), static_cast<int>(form.palette.size()));
     if (!form.transparent.empty())
         png_set_tRNS(png, info, form.transparent.data(), static_cast<int>(form.transparent.size()), nullptr);
-    png_set_gAMA(png, info, 1.0);  // to be passed over
+    png_set_gAMA(png, info, 1.0);  // the decoder ignores this
     png_write_info(png, info);
     std::vector<png_bytep> pointers;
     for (std::size_t y = 0; y < form.height; ++y) pointers.push_back(rows.data() + y * png_get_rowbytes(png, info));
@@ -95,7 +95,7 @@ Bytes jpeg_of(const JpegForm& form, const Bytes& color) {
     return bytes;
 }
 
-/// The image's first pixel, where all of it is of one colour up to rounding.
+/// The image's first pixel; the whole image must have its colour but for rounding.
 std::array<int, 4> color_of(const Result<Image>& image) {
     if (!image) {
         ADD_FAILURE() << image.error().message();
@@ -111,7 +111,7 @@ void expect_near(const std::array<int, 4>& a, const std::array<int, 4>& b) {
 }
 
 TEST(ImageCodec, RefusesPnmPsdAndWhatIsNoImage) {
-    // stb_image reads beyond the end of its rows in the first one, 16 bits a channel.
+    // stb_image reads beyond the rows of the first one, which has 16 bits per channel.
     const std::string pixels(64, '\x7f');
     for (const std::string& text : {"P6 4 4 65535\n" + pixels, "P6 4 4 255\n" + pixels, "P5 4 4 65535\n" + pixels,
                                     std::string("8BPS\0\1\0\0\0\0\0\0\0\3\0\0\0\4\0\0\0\4\0\10\0\3", 26) + pixels,
@@ -122,7 +122,7 @@ TEST(ImageCodec, RefusesPnmPsdAndWhatIsNoImage) {
 }
 
 TEST(ImageCodec, RefusesABmpWithoutPixels) {
-    // stb calls it an image of no width or height, of which nothing can be made.
+    // stb_image accepts it as an image of zero width or height, which cannot be used.
     for (const auto& [width, height] : {std::pair{0, 3}, {3, 0}, {0, 0}}) {
         Bytes bmp = bytes_of(std::string("BM\x5a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0", 18) + std::string(8, '\0') +
                              std::string("\1\0\x18\0", 4) + std::string(60, '\0'));
@@ -139,18 +139,18 @@ TEST(ImageCodec, RefusesImagesThatBreakOff) {
         EXPECT_FALSE(decode_image(std::span(png).first(size))) << size;
     const Bytes jpeg = jpeg_of({}, {10, 20, 30});
     for (std::size_t size = 0; size < 300; ++size) EXPECT_FALSE(decode_image(std::span(jpeg).first(size))) << size;
-    // What breaks off amid its pixels is drawn as far as it goes, as browsers do.
+    // An image whose pixels break off is drawn up to there, as browsers do.
     EXPECT_TRUE(decode_image(std::span(jpeg).first(jpeg.size() - 4)));
 }
 
 TEST(ImageCodec, RefusesTooManyPixelsBeforeTheyAreHeld) {
-    // A header of 30000 × 30000 and nothing behind it.
+    // A header of 30000 × 30000 without any pixels.
     Bytes png = encode_png({1, 1, Bytes(4, 0)});
     Bytes jpeg = jpeg_of({}, {0, 0, 0});
     const std::array<std::uint8_t, 2> side{0x75, 0x30};
     std::ranges::copy(side, png.begin() + 18);
     std::ranges::copy(side, png.begin() + 22);
-    // The checksum of the header, which libpng looks at.
+    // The checksum of the header, which libpng verifies.
     png_uint_32 crc = 0;
     const auto remember = [&crc](std::uint8_t byte) {
         crc ^= byte;
@@ -193,7 +193,7 @@ TEST(ImageCodec, DamagedImagesAreRefusedOrDecoded) {
 
 TEST(ImageCodec, RefusesAJpegOfEndlessScans) {
     Bytes jpeg = jpeg_of({.progressive = true}, {10, 20, 30});
-    // The last scan again and again.
+    // The last scan, repeated many times.
     const std::array<std::uint8_t, 2> start_of_scan{0xFF, 0xDA};
     const auto last = std::ranges::find_end(jpeg, start_of_scan).begin();
     const Bytes scan(last, jpeg.end() - 2);
@@ -225,7 +225,7 @@ TEST(ImageCodec, PngOfAPaletteHasItsColoursAndTransparency) {
     ASSERT_TRUE(image) << image.error().message();
     EXPECT_EQ(image->rgba, (Bytes{255, 0, 0, 0, 0, 255, 0, 128, 0, 0, 255, 255, 255, 0, 0, 0}));
     EXPECT_TRUE(read_image_header(png)->has_alpha);
-    EXPECT_FALSE(decode_image(png_of(form, {0b11'11'11'11})).ok() && image->rgba.empty());  // no such colour
+    EXPECT_FALSE(decode_image(png_of(form, {0b11'11'11'11})).ok() && image->rgba.empty());  // index out of range
 }
 
 TEST(ImageCodec, InterlacedAndGrayPngsAreWhole) {
@@ -246,7 +246,7 @@ TEST(ImageCodec, JpegsOfEveryKindHaveTheirColour) {
     expect_near(color_of(decode_image(jpeg_of({.progressive = true}, {200, 100, 50}))), {200, 100, 50, 255});
     const JpegForm gray{.channels = 1, .stored_as = JCS_GRAYSCALE, .given_as = JCS_GRAYSCALE};
     expect_near(color_of(decode_image(jpeg_of(gray, {90}))), {90, 90, 90, 255});
-    // Full magenta and half black, and the same as Adobe's programs write it.
+    // Full magenta and half black, and the same in the form of Adobe's programs.
     const JpegForm inks{.channels = 4, .stored_as = JCS_CMYK, .given_as = JCS_CMYK};
     expect_near(color_of(decode_image(jpeg_of(inks, {0, 255, 0, 128}))), {127, 0, 127, 255});
     const JpegForm adobe{.channels = 4, .stored_as = JCS_YCCK, .given_as = JCS_CMYK, .adobe = true};
@@ -254,7 +254,7 @@ TEST(ImageCodec, JpegsOfEveryKindHaveTheirColour) {
 }
 
 TEST(ImageCodec, TheCamerasOrientationIsPassedOver) {
-    // Exif with orientation 6: turn by 90 degrees.
+    // Exif with orientation 6: rotate by 90 degrees.
     const std::string exif("Exif\0\0MM\0*\0\0\0\10\0\1\1\22\0\3\0\0\0\1\0\6\0\0\0\0\0\0", 32);
     const auto image = decode_image(jpeg_of({.width = 24, .height = 8, .marker = bytes_of(exif)}, {1, 2, 3}));
     ASSERT_TRUE(image);

@@ -103,7 +103,7 @@ TEST(ReadModel, RefusesAGltfWhoseBufferLiesOutside) {
     EXPECT_FALSE(read_model(scratch.write("in/model.gltf", gltf("../outside.bin"))));
     EXPECT_FALSE(read_model(scratch.write("in/model.gltf", gltf((scratch.path() / "outside.bin").string()))));
     EXPECT_FALSE(read_model(scratch.write("in/model.gltf", gltf("/etc/passwd"))));
-    // The same within the folder is fine.
+    // The same inside of the folder is allowed.
     scratch.write("in/inside.bin", std::string(36, '\0'));
     EXPECT_TRUE(read_model(scratch.write("in/model.gltf", gltf("inside.bin"))));
 }
@@ -123,7 +123,7 @@ TEST(ReadModel, SurvivesDamagedFiles) {
     }
 }
 
-// assimp drops vertices whose numbers begin with a point; cube_obj() writes all of its numbers so.
+// assimp drops vertices whose numbers begin with a decimal point; all numbers of cube_obj() do.
 TEST(ReadModel, ReadsACubeFromObjAsItIs) {
     const ScratchFolder scratch;
     const auto read = read_model(scratch.write("cube.obj", cube_obj()));

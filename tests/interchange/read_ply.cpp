@@ -32,7 +32,7 @@ std::string ascii(const std::string& declarations, const std::string& body) {
     return "ply\nformat ascii 1.0\n" + declarations + "end_header\n" + body;
 }
 
-/// What is said of a file that is refused, without its folder.
+/// The error message of a file that is refused, without its folder.
 std::string refusal(const std::string& content) {
     const auto scene = read(content);
     if (scene) return "read";
@@ -40,7 +40,7 @@ std::string refusal(const std::string& content) {
     return message.substr(message.find("model.ply") + 11);
 }
 
-/// A number's bytes in the other order where `big`.
+/// A number's bytes, in big-endian order if `big`.
 template <class T>
 std::string binary(T number, bool big) {
     std::string bytes(sizeof number, '\0');
@@ -81,7 +81,7 @@ TEST(ReadPly, NamesTheElementAndTheLineOrByte) {
         "element face 0, byte " + last_byte + ": has no readable number for vertex_indices (is the file complete?)");
 }
 
-// What made assimp loop: a few bytes that promise billions.
+// Such files made assimp loop: a few bytes that declare billions of elements.
 TEST(ReadPly, RefusesCountsThatTheFileCannotHold) {
     for (const char* count : {"4000000000", "18446744073709551615", "1000"}) {
         const std::string vertices =
@@ -91,7 +91,7 @@ TEST(ReadPly, RefusesCountsThatTheFileCannotHold) {
         EXPECT_EQ(refusal(ascii(vertices + face_header, "0 0 0\n")), why);
         EXPECT_EQ(refusal("ply\nformat binary_big_endian 1.0\n" + vertices + face_header + "end_header\n0000"), why);
     }
-    // An element of nothing is passed over, however often it is there.
+    // An element without properties is skipped, whatever its count.
     EXPECT_TRUE(
         read(ascii("element nothing 18446744073709551615\n" + triangle_header, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")));
     EXPECT_EQ(refusal(ascii(vertex_header + "element face 1\nproperty list uint int vertex_indices\n",
@@ -153,7 +153,7 @@ TEST(ReadPly, AllEncodingsAndLineEndsGiveTheSame) {
     }
 }
 
-// A vertex whose x has this type and that value, beside y and z of 0: what is read of x.
+// A vertex whose x has this type and value, with y and z of 0; returns the x that was read.
 template <class T>
 float read_as(const std::string& type, T value, bool big) {
     std::string file = std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -246,7 +246,7 @@ TEST(ReadPly, StripsTurnTheSameWay) {
 }
 
 TEST(TrianglesOfPolygon, CoverConcaveOnesOnce) {
-    // An L of area 3, seen from above and from below; a star shape of a fan from corner 0 would not fit in it.
+    // An L of area 3, seen from above and from below; a triangle fan from corner 0 would leave it.
     const std::vector<Vec3f> shape{{2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {1, 2, 1}, {0, 2, 1}, {0, 0, 1}};
     for (const bool from_below : {false, true}) {
         std::vector<Vec3f> corners = shape;

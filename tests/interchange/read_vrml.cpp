@@ -70,12 +70,12 @@ TEST_F(ReadVrml, PlacesShapesAndNamesTheirMaterials) {
         "Shape { appearance Appearance { material Material { diffuseColor 0 1 0 } } geometry Box { size 1 1 1 } }\n");
     ASSERT_TRUE(scene) << scene.error().message();
     EXPECT_EQ(triangles_of(*scene), 36u);
-    ASSERT_EQ(scene->materials.size(), 2u);  // shapes of one material are one part
+    ASSERT_EQ(scene->materials.size(), 2u);  // shapes with the same material become one part
     EXPECT_EQ(scene->materials[0].name, "PIN-01");
     EXPECT_EQ(scene->materials[0].base_color[0], 1);
     EXPECT_NEAR(scene->materials[0].base_color[2], 0.2140f, 1e-3f);  // IEC 61966-2-1 at 0.5
     EXPECT_NEAR(scene->materials[0].base_color[3], 0.75f, 1e-6f);
-    // Scaled first, then turned from X to Y, then moved.
+    // Scaled first, then rotated from X to Y, then translated.
     const Bounds bounds = bounds_of(*scene);
     EXPECT_NEAR(bounds.upper.x, 11.5, 1e-5);
     EXPECT_NEAR(bounds.upper.y, 1, 1e-5);
@@ -153,7 +153,7 @@ TEST_F(ReadVrml, SurfacesThatAreTooManyShareOneWithTextureOrWithout) {
 }
 
 TEST_F(ReadVrml, EndsWithWhatHasNoEnd) {
-    // A node inside of itself; nodes in nodes; one node used 2^40 times.
+    // A node inside of itself; deeply nested nodes; one node used 2^40 times.
     EXPECT_FALSE(read("DEF A Group { children [ " + box + " USE A ] }"));
     std::string deep;
     for (int i = 0; i < 100'000; ++i) deep += "Group { children [ ";

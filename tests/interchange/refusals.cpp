@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Files of every format, broken in every way that a download, a disk or an exporter breaks them: what is refused is
-// refused for a reason that a person can act on.
+// Files of every format, broken in the ways in which downloads, disks and exporters break them: every refusal has a
+// reason that a person can act on.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -83,11 +83,11 @@ constexpr const char* vrml =
     "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] }\n"
     " coordIndex [ 0, 1, 2, -1 ] } }\n";
 
-/// A whole file, with what it needs beside it.
+/// A valid file, with the file that it needs.
 struct Whole {
     const char* name;
     std::string content;
-    const char* companion = nullptr;  ///< name of the file that it refers to and cannot do without
+    const char* companion = nullptr;  ///< name of the file that it refers to and needs
     std::string companion_content = {};
 };
 
@@ -108,7 +108,7 @@ std::vector<Whole> whole_files() {
     return files;
 }
 
-/// What a refusal may not be: the words in which a library gives up.
+/// Words that a reason may not contain: those with which a library gives up.
 constexpr const char* empty_words[] = {"Failed to open file",
                                        "No suitable reader",
                                        "unknown error",
@@ -120,8 +120,8 @@ constexpr const char* empty_words[] = {"Failed to open file",
                                        "vector::",
                                        "exception"};
 
-/// Reads in a process of its own with little processor time, as an import does: the libraries that read models crash at
-/// some files and never end with others. Nothing where the file was read.
+/// Reads in a separate process with little processor time, as an import does: the libraries that read models crash on
+/// some files and never end on others. Empty where the file was read.
 std::optional<Error> read_apart(const std::filesystem::path& file) {
     std::array<int, 2> ends{};
     EXPECT_EQ(pipe(ends.data()), 0);
@@ -149,7 +149,7 @@ std::optional<Error> read_apart(const std::filesystem::path& file) {
 
 class Refusals : public testing::Test {
 protected:
-    /// Reads a file of this content; what is refused names the file and a reason. Returns the reason, "" where it was
+    /// Reads a file with this content; a refusal names the file and a reason. Returns the reason, "" where the file was
     /// read.
     std::string reason(const std::string& name, const std::string& content) {
         const auto refused = read_apart(scratch_.write(name, content));
@@ -235,7 +235,7 @@ TEST_F(Refusals, NameWhatIsWrongInAGltf) {
     expect_reason("a.glb", glb().substr(0, 100), "breaks off");
 }
 
-// Textures are left out with a warning that says why.
+// Missing textures are left out with a warning that says why.
 TEST_F(Refusals, AreNoneForMissingTextures) {
     scratch_.write("cube.mtl", "newmtl m\nmap_Kd lost.png\n");
     const auto read = read_model(scratch_.write("cube.obj", cube_obj("mtllib cube.mtl\nusemtl m\n")));

@@ -19,7 +19,7 @@ TEST(RegularFile, RefusesWhatIsNoFile) {
     const ScratchFolder scratch;
     const auto pipe = scratch.path() / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_EQ(RegularFile::open(pipe, no_limit).error().why, "is no regular file");  // and does not wait for a writer
+    EXPECT_EQ(RegularFile::open(pipe, no_limit).error().why, "is no regular file");  // does not wait for a writer
     EXPECT_EQ(RegularFile::open("/dev/zero", no_limit).error().why, "is no regular file");
     EXPECT_EQ(RegularFile::open(scratch.path(), no_limit).error().why, "is no regular file");
     EXPECT_FALSE(RegularFile::open(scratch.path() / "missing", no_limit));

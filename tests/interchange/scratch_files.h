@@ -13,7 +13,7 @@
 
 namespace embody::test {
 
-/// A folder of the running test's own, removed at its end.
+/// A folder for the running test, removed at its end.
 class ScratchFolder {
 public:
     ScratchFolder() {
@@ -27,7 +27,7 @@ public:
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Writes a file, its folders too, and says where it is.
+    /// Writes a file and its folders; returns its path.
     std::filesystem::path write(const std::string& name, const std::string& content) const {
         const auto file = path_ / name;
         std::filesystem::create_directories(file.parent_path());

@@ -14,7 +14,7 @@
 namespace embody::interchange {
 namespace {
 
-/// A picture whose alpha is told by the place of each pixel; `noisy` ones do not pack.
+/// A picture whose alpha is a function of the pixel's index; a `noisy` one does not compress.
 RawImage picture(int side, const std::function<int(int)>& alpha, bool noisy = false) {
     Image image{side, side, {}};
     std::mt19937 random(5);
@@ -66,7 +66,7 @@ TEST(TextureReduction, MakesLargePicturesSmallerAndKeepsTheirAlpha) {
     ASSERT_TRUE(pixels);
     EXPECT_EQ(pixels->width, 50);
     EXPECT_NEAR(pixels->rgba[3], 128, 1);
-    // Of the same size, but a PNG that does not pack.
+    // A PNG of the same size that does not compress.
     const auto noise = reduce_texture(picture(300, solid, true), 512);
     ASSERT_TRUE(noise);
     EXPECT_EQ(noise->mime_type, "image/jpeg");

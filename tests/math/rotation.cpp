@@ -44,7 +44,7 @@ TEST(Quat, QuarterTurnAboutYTakesZToX) {
 TEST(Quat, MatrixAndBackIsTheSameRotation) {
     Random random(2);
     for (int i = 0; i < 200; ++i) {
-        // Half turns take Shepperd's other branches.
+        // Rotations by half a turn use the other branches of Shepperd's method.
         const Quat q = i % 4 == 0 ? from_axis_angle(normalized(random_vector(random)), pi) : random_rotation(random);
         const Mat3 m = to_matrix(q);
         EXPECT_NEAR(determinant(m), 1, rounding);

@@ -19,7 +19,7 @@ using test::ScratchFolder;
 
 const std::filesystem::path real_worker = build_folder() / "src/embody-import-worker";
 
-/// What came of each item; fails the test where one is told twice or not at all.
+/// The result of each item; fails the test where one is reported twice or not at all.
 std::map<std::size_t, Result<PreparedModel>> prepare_all(const std::vector<ImportItem>& items,
                                                          const ConfinedPoolOptions& options) {
     std::map<std::size_t, Result<PreparedModel>> results;
@@ -35,7 +35,7 @@ std::map<std::size_t, Result<PreparedModel>> prepare_all(const std::vector<Impor
 
 std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// A program that says it is ready, waits for an item and then does as `rest` (shell) says.
+/// A program that reports that it is ready, waits for an item and then runs `rest` (shell).
 std::filesystem::path fake_worker(const ScratchFolder& scratch, const std::string& rest) {
     const auto ready = scratch.write("ready", as_text(frame(FrameKind::ready, {})));
     const auto program =
@@ -81,7 +81,7 @@ TEST(ConfinedPool, EndsAWorkerThatTakesTooLong) {
               "needs more than 1 s of processor time");
 }
 
-// What a fake worker answers to any item.
+// A fake worker's answer to every item.
 std::string answers(const ScratchFolder& scratch, FrameKind kind, const std::string& why) {
     const auto answer = scratch.write("answer " + why, as_text(frame(kind, to_bytes(Error{"a.obj", why}))));
     return "cat '" + answer.string() + "'\nexec sleep 1000";
@@ -93,7 +93,7 @@ TEST(ConfinedPool, WaitingIsNotWorking) {
     EXPECT_EQ(reason_from(late, {.processor_seconds_per_model = 0.5}), "late");
 }
 
-/// A program that dies as `death` (shell) says the first time that it has an item, and then does as `rest` says.
+/// A program that dies by `death` (shell) when it first receives an item, and runs `rest` the next time.
 std::filesystem::path fake_worker_that_recovers(const ScratchFolder& scratch, const std::string& death,
                                                 const std::string& rest) {
     const std::string mark = "'" + (scratch.path() / "tried").string() + "'";
@@ -106,7 +106,7 @@ TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
         const auto worker = fake_worker_that_recovers(scratch, death, answers(scratch, FrameKind::failed, "answered"));
         EXPECT_EQ(reason_from(worker, {.wall_seconds_per_model = 3}), "answered") << death;
     }
-    // What the file causes by itself is not tried again.
+    // A failure that the file causes by itself is not tried again.
     const ScratchFolder scratch;
     const auto worker =
         fake_worker_that_recovers(scratch, "while :; do :; done", answers(scratch, FrameKind::failed, "answered"));
@@ -114,7 +114,7 @@ TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
               "needs more than 0.500000 s of processor time");
 }
 
-// A worker whose memory a file has damaged answers, and not again: the next file is innocent.
+// A worker whose memory a file may have damaged is not used for the next file.
 TEST(ConfinedPool, TheSecondTryIsByAWorkerOfItsOwn) {
     const ScratchFolder scratch;
     const std::string lives = "'" + scratch.write("lives", "0").string() + "'";
@@ -131,7 +131,7 @@ TEST(ConfinedPool, TheSecondTryIsByAWorkerOfItsOwn) {
 
 TEST(ConfinedPool, AModelThatNeedsMoreMemoryHasItAlone) {
     const ScratchFolder scratch;
-    // A worker's second argument is its address space. Half of the budget, for two at a time, is too little.
+    // A worker's second argument is its address space. Half of the budget, for two workers at a time, is too little.
     const std::string more = answers(scratch, FrameKind::out_of_memory, "too little");
     const auto worker = fake_worker(
         scratch, "test $2 -gt 2000000000 || { " + more + "; }\n" + answers(scratch, FrameKind::failed, "enough"));
@@ -167,7 +167,7 @@ TEST(ConfinedPool, TakesNothingFromAWorkerThatLies) {
     };
     const std::string refused = "sent something that is not its protocol";
     EXPECT_EQ(says("garbage that is longer than a header"), refused);
-    // A length of 4 GiB, a hash that does not fit, a model that is none.
+    // A length of 4 GiB, a wrong hash, an invalid model.
     std::string huge = as_text(frame(FrameKind::prepared, {}));
     std::fill(huge.begin() + 12, huge.begin() + 16, '\xff');
     EXPECT_EQ(says(huge), refused);

@@ -19,7 +19,7 @@
 namespace embody::catalog {
 namespace {
 
-/// Confines a child process and runs `attempt` in it; what it returns, or -signal.
+/// Confines a child process and runs `attempt` in it; returns its result, or -signal.
 template <class Attempt>
 int confined(Attempt attempt, ConfinementOptions options = {.address_space = std::size_t{1} << 40}) {
     options.parent = getpid();
@@ -134,7 +134,7 @@ TEST(Confinement, LimitsMemory) {
 }
 
 TEST(Confinement, EndsWithItsParent) {
-    // The grandchild alone holds the pipe's end as its output: when that is closed, it is gone.
+    // Only the grandchild has the pipe's end as its output: once that is closed, the grandchild has ended.
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();

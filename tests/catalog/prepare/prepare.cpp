@@ -58,7 +58,7 @@ TEST(MeasureParts, OneForEachMaterialTheLargestFirst) {
     EXPECT_NEAR(parts[1].form.shell.volume, 2, 1e-6);
     EXPECT_EQ(parts[1].form.solid.volume, 0);
 
-    // Very many materials: the rest is one without a name.
+    // Too many materials: those beyond the limit become one without a name.
     for (int i = 0; i < 100; ++i) {
         scene.materials.push_back({.name = "m" + std::to_string(i)});
         scene.meshes.push_back(scene.meshes[0]);
@@ -87,7 +87,7 @@ TEST(Placement, RefusesWhatHasNoExtentOrAnAbsurdOne) {
 TEST(Placement, PutsTheOriginUnderTheStatedSize) {
     auto scene = square();
     ImportItem item;
-    item.stated_size = {4, 9, 3};  // its height cannot be had: the square is flat
+    item.stated_size = {4, 9, 3};  // the height is impossible: the square is flat
     ASSERT_TRUE(place(scene, item));
     EXPECT_EQ(scene.meshes[0].positions[0], (Vec3f{-2, 0, -1.5f}));
     EXPECT_EQ(scene.meshes[0].positions[2], (Vec3f{2, 0, 1.5f}));
@@ -96,7 +96,7 @@ TEST(Placement, PutsTheOriginUnderTheStatedSize) {
 TEST(Placement, TurnsBeforeItMeasures) {
     auto scene = square();
     ImportItem item;
-    item.stated_rotation = {0, 0, 1, 0, 1, 0, -1, 0, 0};  // a quarter about Y: z becomes x
+    item.stated_rotation = {0, 0, 1, 0, 1, 0, -1, 0, 0};  // a quarter turn about Y: z becomes x
     item.stated_size = {1, 1, 2};
     ASSERT_TRUE(place(scene, item));
     EXPECT_NEAR(scene.meshes[0].positions[0].x, -0.5f, 1e-6f);
@@ -115,7 +115,7 @@ TEST(SurfaceFinish, OpenSurfacesShowBothSidesAndClosedOnesDoNot) {
     auto scene = square();
     finish_surfaces(scene);
     EXPECT_TRUE(scene.materials[0].double_sided);
-    // Modelled on both sides: drawing both would flicker.
+    // Modelled with both sides: drawing both would flicker.
     scene = square();
     scene.meshes[0].triangles.push_back({0, 1, 2});
     scene.meshes[0].triangles.push_back({0, 2, 3});
@@ -124,7 +124,7 @@ TEST(SurfaceFinish, OpenSurfacesShowBothSidesAndClosedOnesDoNot) {
 }
 
 TEST(SurfaceFinish, NormalsAreSharpAtAFold) {
-    // Two squares at a right angle that share an edge.
+    // Two squares at a right angle with a common edge.
     interchange::RawScene scene;
     scene.meshes.push_back({.name = "fold",
                             .material = -1,
@@ -189,7 +189,7 @@ TEST(Prepare, MeasuresACubeExactly) {
     EXPECT_EQ(prepared->triangles, 12u);
     EXPECT_EQ(prepared->hull_points.size(), 8u);
 
-    // What is stored is what was measured.
+    // The stored mesh is the one that was measured.
     const auto mesh = interchange::decode_mesh(prepared->geometry);
     ASSERT_TRUE(mesh);
     const Bounds bounds = geometry::bounds(*mesh);
@@ -221,7 +221,7 @@ TEST(Prepare, HollowThingsThatMoveAreDecomposed) {
     EXPECT_EQ(chair->convex_parts.hull_error, attributes::usual_hull_error);
     EXPECT_GT(chair->facts.geometry.hull_concavity, 0.15);
 
-    // What stays where it is collides with its triangles; how hollow it is, is known all the same.
+    // An immovable model collides by its triangles; its hollowness is computed all the same.
     item.movable = false;
     const auto fixed = preparation.prepare(item);
     ASSERT_TRUE(fixed);
@@ -275,7 +275,7 @@ TEST(Prepare, ThumbnailIsTheCataloguesIconOrARenderedPicture) {
     EXPECT_EQ(alpha(stretched, 128, 20), 0);  // above the wide icon
     EXPECT_EQ(alpha(stretched, 5, 128), 255);
 
-    // Without a usable icon the cube itself: in the middle, not in the corners.
+    // Without a usable icon the cube itself is drawn: in the centre, not in the corners.
     for (const char* path : {"", "bad.png", "missing.png"}) {
         item.icon_path = path;
         const auto rendered = picture();

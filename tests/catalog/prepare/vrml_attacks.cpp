@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What other formats are attacked with, as VRML: confined as they are, and refused by name.
+// The attacks on other formats, as VRML: confined like them, and refused with the file's name.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -24,7 +24,7 @@ protected:
         if (!interchange::can_read("model.wrl")) GTEST_SKIP() << "this build reads no VRML";
     }
 
-    /// What comes of each, in order.
+    /// The result of each file, in order.
     std::vector<Result<PreparedModel>> prepare(const std::vector<std::filesystem::path>& files) const {
         std::vector<ImportItem> items;
         for (const auto& file : files) items.push_back({.path = file.string()});
@@ -47,7 +47,8 @@ protected:
 };
 
 TEST_F(VrmlAttacks, BombsEndTheirOwnFileOnly) {
-    // Prototypes of two of each other, thirty deep; a picture and a grid larger than any memory; nodes in themselves.
+    // Prototypes of two of each other, thirty levels deep; a picture and a grid larger than any memory; nodes that
+    // contain themselves.
     std::string prototypes = "PROTO P0 [] { Group { children [ " + box + "] } }\n";
     for (int i = 1; i < 30; ++i) {
         const std::string below = "P" + std::to_string(i - 1) + " {} ";
@@ -73,7 +74,7 @@ TEST_F(VrmlAttacks, BombsEndTheirOwnFileOnly) {
 }
 
 TEST_F(VrmlAttacks, NoNodeOpensOtherFiles) {
-    // A pipe without a writer: whoever opens it waits for ever. It lies where the worker may read.
+    // A pipe without a writer: opening it waits without end. It lies where the worker may read.
     std::filesystem::create_directory(scratch_.path() / "models");
     const std::string pipe = (scratch_.path() / "models/pipe.png").string();
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -86,7 +87,7 @@ TEST_F(VrmlAttacks, NoNodeOpensOtherFiles) {
             scratch_.write("models/" + node.substr(0, node.find(' ')) + ".wrl", vrml(node + " \"" + pipe + "\" }\n")));
     }
     for (const auto& result : prepare(files)) {
-        // Left out or not understood; never waited for.
+        // The pipe is left out or not understood; the worker never waits for it.
         if (!result) {
             EXPECT_EQ(result.error().why.find("was not ready"), std::string::npos) << result.error().message();
         }

@@ -29,7 +29,7 @@ bool any_contains(const Decomposition& parts, Vec3 p, double margin = 0) {
     return false;
 }
 
-// What holds of every decomposition, whatever the mesh.
+// Checks what holds for every decomposition of any mesh.
 void expect_sound(const TriangleMesh& mesh, const DecompositionParameters& parameters = {}) {
     const Decomposition parts = decomposed(mesh, parameters);
     ASSERT_FALSE(parts.hulls.empty());
@@ -147,7 +147,7 @@ TEST(Decomposition, SheetsAndSingleTrianglesGetAThickness) {
 }
 
 TEST(Decomposition, RealMeshesDefectsDoNotMatter) {
-    // Twice the same triangles, turned triangles, vertices of their own, parts that pass through each other.
+    // The same triangles twice, reversed triangles, separate vertices, parts that intersect each other.
     TriangleMesh chair = make_chair();
     append(chair, make_chair());
     for (std::size_t i = 0; i < chair.triangles.size(); i += 3) {

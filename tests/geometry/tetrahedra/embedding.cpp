@@ -17,7 +17,7 @@ struct Drawn {
     std::vector<EmbeddedPoint> points;
 };
 
-// A ball drawn in its tetrahedra, with a rod that sticks out.
+// A ball embedded in its tetrahedra, with a rod that sticks out.
 Drawn make_drawn() {
     Drawn made;
     made.drawn = make_sphere(0.2);

@@ -21,7 +21,7 @@ TetrahedralFilling filled(const TriangleMesh& surface, const TetrahedralParamete
     return made.ok() ? *std::move(made) : TetrahedralFilling{};
 }
 
-// Of the outer faces alone, from the middle of the first: the theorem of Gauss.
+// Volume of the outer faces alone, as tetrahedra from the first node (theorem of Gauss).
 double volume_within_surface(const TetrahedralMesh& mesh) {
     double sum = 0;
     const Vec3 from = mesh.nodes[0];
@@ -31,7 +31,7 @@ double volume_within_surface(const TetrahedralMesh& mesh) {
     return sum;
 }
 
-// What holds of every filling, whatever the surface.
+// Checks what holds for every filling of any surface.
 void expect_sound(const TetrahedralFilling& filling) {
     const TetrahedralMesh& mesh = filling.mesh;
     ASSERT_FALSE(mesh.tetrahedra.empty());
@@ -44,7 +44,7 @@ void expect_sound(const TetrahedralFilling& filling) {
     }
     EXPECT_EQ(used.size(), mesh.nodes.size());
     EXPECT_EQ(*used.rbegin() + 1, mesh.nodes.size());
-    // No two overlap: what the faces enclose is what the tetrahedra hold.
+    // No two tetrahedra overlap: the volume within the faces is the sum of the tetrahedra's.
     EXPECT_NEAR(volume_within_surface(mesh), sum, 1e-9 * sum);
 
     const DihedralAngles angles = measure_dihedral_angles(mesh);
@@ -154,7 +154,7 @@ TEST(FillWithTetrahedra, OpenTurnedAndOverlappingSurfacesAreFilled) {
     EXPECT_NEAR(volume(box.mesh), 0.36, 0.06);
     EXPECT_NEAR(box.volume_fraction, 1, 0.05);
 
-    // Two boxes that share a third: the shared part counts once, and the walls in the middle leave no trace.
+    // Two boxes that overlap: the overlap counts once, and the walls inside it have no effect.
     TriangleMesh pair = make_box({0.3, 0.2, 0.2}, {-0.2, 0, 0});
     append(pair, make_box({0.3, 0.2, 0.2}, {0.2, 0, 0}));
     expect_volume(pair, 5000, 1.0 * 0.4 * 0.4, 0.03);
