@@ -19,12 +19,15 @@ name_folders = (
     "src/physics",
     "src/scene",
 )
-comment_folders = (
-    "src",
-    "tests/attributes",
-    "tests/evaluation",
-    "tests/scene",
-)
+comment_folders = ("benches", "scenes", "src", "studio/src", "tests", "tools")
+comment_of = {  # by the end of a file's name; strings come first, so that a comment within them is none
+    ".h": r"//[^\n]*|/\*.*?\*/",
+    ".cpp": r"//[^\n]*|/\*.*?\*/",
+    ".ts": r"//[^\n]*|/\*.*?\*/",
+    ".mjs": r"//[^\n]*|/\*.*?\*/",
+    ".py": r"#[^\n]*",
+    ".sh": r"#[^\n]*",
+}
 saved_names = {"least_approach_speed"}  # members that are named as their field in scene files
 everyday_words = {"give", "patient", "share", "shares", "way", "ways"}  # banned in names alone
 
@@ -49,14 +52,17 @@ def names_in(text: str) -> list[tuple[int, str]]:
     return [(number, name) for number, line in enumerate(code.splitlines(), 1) for name in re.findall(r"[A-Za-z_]\w*", line)]
 
 
-def comment_words_in(text: str) -> list[tuple[int, str]]:
-    """Words of comments with their lines; names in backticks left out."""
-    return [(number, word) for number, line in enumerate(text.splitlines(), 1) if "//" in line
-            for word in re.findall(r"[A-Za-z]+", re.sub(r"`[^`]*`|\"(?:\\.|[^\"\\])*\"", "", line).partition("//")[2])]
+def comment_words_in(path: pathlib.Path) -> list[tuple[int, str]]:
+    """Words of comments with their lines; names in backticks and quoted words left out."""
+    text, words = path.read_text(), []
+    for match in re.finditer(r"\"(?:\\.|[^\"\\\n])*\"|'\\?.'|(" + comment_of[path.suffix] + ")", text, re.DOTALL):
+        for offset, line in enumerate((match[1] or "").splitlines(), text.count("\n", 0, match.start()) + 1):
+            words += [(offset, word) for word in re.findall(r"[A-Za-z]+", re.sub(r"`[^`]*`|\"[^\"]*\"", "", line))]
+    return words
 
 
-def sources_in(root: pathlib.Path, folders: tuple[str, ...]) -> list[pathlib.Path]:
-    return [p for folder in folders for p in sorted((root / folder).rglob("*")) if p.suffix in (".h", ".cpp")]
+def sources_in(root: pathlib.Path, folders: tuple[str, ...], ends: tuple[str, ...]) -> list[pathlib.Path]:
+    return [p for folder in folders for p in sorted((root / folder).rglob("*")) if p.suffix in ends]
 
 
 def words_of(name: str) -> set[str]:
@@ -69,8 +75,8 @@ def main() -> int:
     root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parent.parent
     words, starts = banned_words(root / "docs" / "glossary.md")
     single = {word for word in words if "_" not in word}
-    files = sources_in(root, name_folders)
-    commented = sources_in(root, comment_folders) if reads_comments else []
+    files = sources_in(root, name_folders, (".h", ".cpp"))
+    commented = sources_in(root, comment_folders, tuple(comment_of)) if reads_comments else []
     wrong, checked = [], 0
     for path in files:
         for number, name in names_in(path.read_text()):
@@ -79,7 +85,7 @@ def main() -> int:
             if name not in saved_names and (name in words or words_of(name) & single or start in starts):
                 wrong.append(f"{path.relative_to(root)}:{number}: {name}: see docs/glossary.md")
     for path in commented:
-        for number, word in comment_words_in(path.read_text()):
+        for number, word in comment_words_in(path):
             if word.lower() in single - everyday_words:
                 wrong.append(f"{path.relative_to(root)}:{number}: comment: {word}: see docs/glossary.md")
     for line in wrong:
