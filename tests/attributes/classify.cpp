@@ -134,7 +134,7 @@ TEST(Classify, WhatElseIsKnownChoosesTheSense) {
     EXPECT_EQ(taken(facts).category->name, "bird");
 }
 
-TEST(Classify, AmbiguityIsTold) {
+TEST(Classify, AmbiguityIsReported) {
     const Classification crane = taken(unsized("crane"));
     ASSERT_FALSE(crane.others.empty());
     EXPECT_LT(crane.confidence, 0.9 * std::pow(0.93, crane.steps));

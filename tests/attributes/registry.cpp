@@ -36,7 +36,7 @@ TEST(Validate, SaysTheRange) {
     EXPECT_EQ(validate("break_impulse", -1.0).error().why, "must be at least 0 N s, got -1");
 }
 
-TEST(Validate, RefusesNumbersThatAreNone) {
+TEST(Validate, RefusesFractionsOfCountsAndNonFiniteNumbers) {
     EXPECT_TRUE(validate("max_hulls", 3.0).ok());
     EXPECT_NE(validate("max_hulls", 2.5).error().message().find("a whole number from 1 to 256"), std::string::npos);
     EXPECT_FALSE(validate("collision_mask", 0.5).ok());

@@ -271,7 +271,7 @@ TEST(Resolve, TagsThenFolderThenCatalogueCategoryTellWhereTheNameDoesNot) {
     EXPECT_NE(resolved(facts).find("category")->source.find("tag says \"armchair\""), std::string::npos);
 }
 
-TEST(Resolve, AmbiguityIsSaid) {
+TEST(Resolve, AmbiguityIsReported) {
     const AttributeSet set = resolved(named("Chair and table"));
     EXPECT_EQ(set.word("category", ""), "chair");
     EXPECT_NE(set.find("category")->source.find("it also says \"table\""), std::string::npos);

@@ -86,7 +86,7 @@ TEST(race_shapes, hulls_keep_all_vertices_and_are_closed) {
     }
 }
 
-TEST(race_overlap, bodies_that_are_no_number_or_below_the_ground_have_escaped) {
+TEST(race_overlap, bodies_below_the_ground_or_at_no_finite_position_have_escaped) {
     const RaceScene scene = two_bodies(make_sphere(0.5));
     EXPECT_EQ(overlap_at(scene, {0, std::nan(""), 0}).escaped, 1);
     EXPECT_EQ(overlap_at(scene, {3, -0.1, 0}).escaped, 1);

@@ -33,7 +33,7 @@ TEST_F(CatalogTest, RefusesAMissingTaxonomyAndAForeignFile) {
     EXPECT_FALSE(Catalog::open(folder_.path(), taxonomy_folder));
 }
 
-TEST_F(CatalogTest, TellsWhatIsNotThere) {
+TEST_F(CatalogTest, ReportsMissingModelsAndIds) {
     const auto catalog = open();
     EXPECT_FALSE(catalog->model("nothing of this name"));
     EXPECT_FALSE(catalog->model(""));
@@ -63,7 +63,7 @@ TEST_F(CatalogTest, RefusesAWrongAttributeByName) {
     EXPECT_EQ(catalog->attributes(id)->find("mass")->level == AttributeLevel::manual, false);
 }
 
-TEST_F(CatalogTest, GivesBackWhatWasPrepared) {
+TEST_F(CatalogTest, ReturnsWhatWasPrepared) {
     const auto catalog = open();
     const auto model = catalog->model("office chair");
     ASSERT_TRUE(model);
@@ -201,7 +201,7 @@ TEST_F(CatalogTest, AChangedOverlayResolvesAgainAndKeepsWhatPersonsSet) {
     EXPECT_EQ(catalog->attributes(catalog->model("office chair")->id)->number("friction_dynamic", 0), 0.123);
 }
 
-TEST_F(CatalogTest, ResolvingAnewGoesOnWhereItWasStopped) {
+TEST_F(CatalogTest, ResolvingContinuesWhereItWasStopped) {
     {
         const auto catalog = open();
         std::vector<ModelVariant> variants;
@@ -249,7 +249,7 @@ TEST_F(CatalogTest, ResolvingAnewGoesOnWhereItWasStopped) {
     EXPECT_EQ(unresolved(), 0);
 }
 
-TEST_F(CatalogTest, ANameOfTwoModelsIsNoName) {
+TEST_F(CatalogTest, ANameOfTwoModelsIsAmbiguous) {
     write_model("other/office_chair.obj", std::string(85, 'x'));
     ASSERT_TRUE(import());
     const auto catalog = open();

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 const fs::path collections = source_folder() / "data" / "collections";
 
-TEST(Collection, AnUnknownNameIsToldWithThoseThatAreKnown) {
+TEST(Collection, AnUnknownNameIsReportedWithTheKnownOnes) {
     for (const char* name : {"missing", "../taxonomy/materials", ""}) {
         const auto read = read_collection(collections, name);
         ASSERT_FALSE(read) << name;
@@ -24,7 +24,7 @@ TEST(Collection, AnUnknownNameIsToldWithThoseThatAreKnown) {
     }
 }
 
-TEST(Collection, ADescriptionOfOnesOwnIsReadStrictly) {
+TEST(Collection, AUsersDescriptionIsReadStrictly) {
     const test::TemporaryFolder folder;
     const std::string begin = R"({"name": "mine", "title": "Mine", "folders": [], "extensions": [".ply"], "unit": 0.01,
         "licence": "CC0-1.0", "author": "I", "source": "I made it", "up": )";
@@ -82,7 +82,7 @@ protected:
     }
 };
 
-TEST_F(CollectionImport, AFolderThatIsNotThereNamesItsPackage) {
+TEST_F(CollectionImport, AMissingFolderIsReportedWithItsPackage) {
     const auto report = import({}, options());
     ASSERT_TRUE(report);
     ASSERT_EQ(report->failures.size(), 1u);

@@ -57,7 +57,7 @@ TEST_F(ConvexPartsTest, RefusesUnknownModelsAndLimits) {
     EXPECT_EQ(stored(), 1);
 }
 
-TEST_F(ConvexPartsTest, TheImportsAreThereAndOthersAreMadeOnce) {
+TEST_F(ConvexPartsTest, ThoseOfTheImportAreStoredAndOthersAreMadeOnce) {
     EXPECT_EQ(catalog_->attributes(id_)->word("collision_shape", ""), "decomposition");
     const auto usual = catalog_->convex_parts(id_, 16, 0.01);
     ASSERT_TRUE(usual) << usual.error().message();
@@ -84,7 +84,7 @@ TEST_F(ConvexPartsTest, AChangeByHandOfALimitMakesThemAnew) {
     EXPECT_EQ(stored(), 4);
 }
 
-TEST_F(ConvexPartsTest, AnotherGeometryForgetsThem) {
+TEST_F(ConvexPartsTest, NewGeometryRemovesThem) {
     ASSERT_TRUE(catalog_->set_attribute(id_, "max_hulls", 2.0));
     EXPECT_EQ(stored(), 2);
     ASSERT_TRUE(import({models()}, {.again = true}, prepare_chairs));

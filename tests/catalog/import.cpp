@@ -48,7 +48,7 @@ TEST_F(ImportTest, FailsWhereNoWorkerCanBeStarted) {
     EXPECT_EQ(report.error().why, "is missing");
 }
 
-TEST_F(ImportTest, FullDiskIsToldAndWhatWasStoredStays) {
+TEST_F(ImportTest, AFullDiskIsReportedAndWhatWasStoredStays) {
     for (int i = 0; i < 200; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(200 + i, 'x'));
     auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
     auto connection = database::open_model_database(database());
@@ -112,7 +112,7 @@ TEST_F(ImportTest, OfTwoEqualFilesAChangedOneBecomesAModelOfItsOwn) {
     EXPECT_EQ(stored_models(), 2);
 }
 
-TEST_F(ImportTest, AgainPreparesWhatIsUnchanged) {
+TEST_F(ImportTest, TheOptionAgainPreparesUnchangedFiles) {
     write_model("a.obj", "aaa");
     ASSERT_TRUE(import());
     const auto report = import({models()}, {.again = true});

@@ -90,7 +90,7 @@ TEST_F(ManualChangesTest, AMaterialBringsItsDensityAndFrictionAndMustBeKnown) {
     EXPECT_EQ(density(), before);
 }
 
-TEST_F(ManualChangesTest, AnAttributeThatDoesNotConcernAModelStopsAllOrIsSkipped) {
+TEST_F(ManualChangesTest, AnAttributeThatDoesNotApplyToAModelStopsAllOrIsSkipped) {
     const std::vector<AttributeChange> softness = {{"youngs_modulus", 1e5}};
     const auto refused = catalog_->change_attributes(SearchQuery{}, softness);
     ASSERT_TRUE(refused);
@@ -153,7 +153,7 @@ TEST_F(ManualChangesTest, StoppedOrKilledHalfWayNothingIsChanged) {
     EXPECT_EQ(chairs_of(8), chairs);
 }
 
-TEST_F(ManualChangesTest, ProcessesThatChangeAtOnceComeOneAfterTheOther) {
+TEST_F(ManualChangesTest, ProcessesThatChangeAtTheSameTimeTakeTurns) {
     catalog_.reset();
     std::vector<pid_t> children;
     for (int one = 1; one <= 4; ++one) {

@@ -136,7 +136,7 @@ TEST_F(ChangeTables, ImportsAreFoundByPlaceArchiveAndPreparation) {
     EXPECT_EQ(*settings_.get("colour"), "blue");
 }
 
-TEST_F(ChangeTables, ADatabaseWithoutThemIsToldByEveryCall) {
+TEST_F(ChangeTables, EveryCallReportsADatabaseWithoutThem) {
     for (const char* table : {"manual_attribute", "manual_change", "manual_batch", "import_source", "setting"})
         ASSERT_TRUE((*connection_)->execute(std::string("DROP TABLE ") + table)) << table;
     EXPECT_FALSE(attributes_.of("a").ok());

@@ -154,7 +154,7 @@ TEST(Connection, AReadOnlyFileIsReadWhileItsOwnerWrites) {
     }
 }
 
-TEST(Connection, TellsAReadOnlyFileWhoseLastChangesAreInItsLog) {
+TEST(Connection, ReportsAReadOnlyFileWhoseLastChangesAreInItsLog) {
     TemporaryFolder folder;
     {
         const auto owner = Connection::open(folder / "models.sqlite", ours);
@@ -171,7 +171,7 @@ TEST(Connection, TellsAReadOnlyFileWhoseLastChangesAreInItsLog) {
     chmod(folder.path().c_str(), 0755);
 }
 
-TEST(Connection, TellsADamagedFile) {
+TEST(Connection, ReportsADamagedFile) {
     TemporaryFolder folder;
     {
         auto connection = Connection::open(folder / "models.sqlite", ours);
@@ -196,7 +196,7 @@ TEST(Connection, TellsADamagedFile) {
     EXPECT_FALSE(read);
 }
 
-TEST(Connection, TellsAFullDiskAndKeepsWhatWasThere) {
+TEST(Connection, ReportsAFullDiskAndKeepsWhatWasThere) {
     TemporaryFolder folder;
     auto connection = Connection::open(folder / "models.sqlite", ours);
     ASSERT_TRUE(connection);
@@ -215,7 +215,7 @@ TEST(Connection, TellsAFullDiskAndKeepsWhatWasThere) {
     EXPECT_TRUE(database.check_integrity());
 }
 
-TEST(Connection, TellsALockThatIsHeldTooLong) {
+TEST(Connection, ReportsALockThatIsHeldTooLong) {
     TemporaryFolder folder;
     auto first = Connection::open(folder / "models.sqlite", ours);
     auto second = Connection::open(folder / "models.sqlite", ours);
@@ -227,7 +227,7 @@ TEST(Connection, TellsALockThatIsHeldTooLong) {
     EXPECT_NE(waiting.error().why.find("another process is writing"), std::string::npos);
 }
 
-TEST(Connection, TellsAWrongCommandAndGoesOn) {
+TEST(Connection, ReportsAWrongCommandAndContinues) {
     TemporaryFolder folder;
     auto connection = Connection::open(folder / "models.sqlite", ours);
     ASSERT_TRUE(connection);
@@ -300,7 +300,7 @@ TEST(Migrations, RefuseANewerSchemaByItsVersion) {
     EXPECT_EQ(*(*connection)->query_integer("SELECT count(*) FROM sqlite_schema"), 0);
 }
 
-TEST(Migrations, OfAReadOnlyFileAreTold) {
+TEST(Migrations, OfAReadOnlyFileAreReported) {
     TemporaryFolder folder;
     ASSERT_TRUE(Connection::open(folder / "models.sqlite", ours));
     chmod((folder / "models.sqlite").c_str(), 0444);

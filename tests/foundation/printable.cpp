@@ -39,7 +39,7 @@ TEST(Printable, BytesThatAreNoUtf8AreWrittenOut) {
     EXPECT_EQ(printable("\xe2\x80"), "\\xe2\\x80") << "cut off";
 }
 
-TEST(Printable, IsPrintableItself) {
+TEST(Printable, LeavesItsOwnResultUnchanged) {
     std::string all;
     for (int byte = 0; byte < 256; ++byte) all += static_cast<char>(byte);
     const std::string once = printable(all);

@@ -15,7 +15,7 @@ TEST(StateHash, GivesThePublishedNumbersOfFnv1a) {
     EXPECT_EQ(word.value(), 0x85944171F73967E8ull);
 }
 
-TEST(StateHash, TellsOrderSignOfZeroAndLastBitApart) {
+TEST(StateHash, DistinguishesOrderSignOfZeroAndLastBit) {
     const auto hash = [](double a, double b) {
         StateHash h;
         h.add(a);

@@ -29,7 +29,7 @@ TEST(TaskPool, TakesNoMoreWorkersThanTheMachineHasThreads) {
     EXPECT_LE(TaskPool::workers_that_pay(), std::min(threads, 4));
 }
 
-TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {
+TEST_P(EachPool, RunsTasksAfterPausesWithThreadsAwakeOrAsleep) {
     // Tasks with longer pauses than the threads wait actively for the next one, so that they sleep and must be woken.
     TaskPool pool(GetParam());
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
@@ -63,7 +63,7 @@ TEST_P(EachPool, WorkersMeetAtTheBarrier) {
     EXPECT_EQ(sum, workers * (1 + 500L * 499 / 2));
 }
 
-TEST_P(EachPool, SharesCoverAllOnce) {
+TEST_P(EachPool, RangesOfTheWorkersCoverEachIndexOnce) {
     for (const std::size_t count : {0u, 1u, 7u, 64u, 1001u}) {
         std::size_t next = 0;
         for (int worker = 0; worker < GetParam(); ++worker) {

@@ -28,7 +28,7 @@ std::vector<Taken> taken_from(ZoneRecording& recording) {
     return all;
 }
 
-TEST(Zones, NothingIsNotedWithoutARecording) {
+TEST(Zones, AreRecordedOnlyDuringARecording) {
     { EMBODY_ZONE("before"); }
     ZoneRecording recording;
     EXPECT_TRUE(taken_from(recording).empty());
@@ -78,7 +78,7 @@ TEST(Zones, WhatBeganBeforeTheRecordingIsNotInIt) {
     EXPECT_TRUE(taken_from(second).empty());
 }
 
-TEST(Zones, MoreThanThereIsRoomForAreDroppedAndCounted) {
+TEST(Zones, BeyondTheCapacityAreDroppedAndCounted) {
     constexpr std::size_t room = 8;
     ZoneRecording recording(room);
     for (int i = 0; i < 20; ++i) {

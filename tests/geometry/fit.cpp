@@ -85,7 +85,7 @@ TEST(Fit, PillIsACapsule) {
     EXPECT_FALSE(fit_capsule(hull_of(make_sphere(1))).has_value());
 }
 
-TEST(Fit, TorusAndWedgeAndConeAreNone) {
+TEST(Fit, TorusWedgeAndConeFitNoPrimitive) {
     EXPECT_FALSE(best_primitive(hull_of(make_torus(2, 0.7))).has_value());
     TriangleMesh wedge = make_box({1, 1, 1});
     wedge.positions[6] = wedge.positions[4];

@@ -85,7 +85,7 @@ TEST(Topology, ComponentsAreNumberedByFirstTriangle) {
     EXPECT_EQ(parts[2].positions.size(), 8u);
 }
 
-TEST(OrientedOutwards, MendsRandomlyTurnedTriangles) {
+TEST(OrientedOutwards, CorrectsRandomlyReversedTriangles) {
     TriangleMesh mesh = weld(make_torus(2, 0.5), 1e-6);
     append(mesh, make_box({1, 1, 1}, {9, 0, 0}));
     const double volume = integrate_polyhedron(mesh).volume;

@@ -253,7 +253,7 @@ TEST(ImageCodec, JpegsOfEveryKindHaveTheirColour) {
     expect_near(color_of(decode_image(jpeg_of(adobe, {255, 0, 255, 127}))), {127, 0, 127, 255});
 }
 
-TEST(ImageCodec, TheCamerasOrientationIsPassedOver) {
+TEST(ImageCodec, IgnoresTheCamerasOrientation) {
     // Exif with orientation 6: rotate by 90 degrees.
     const std::string exif("Exif\0\0MM\0*\0\0\0\10\0\1\1\22\0\3\0\0\0\1\0\6\0\0\0\0\0\0", 32);
     const auto image = decode_image(jpeg_of({.width = 24, .height = 8, .marker = bytes_of(exif)}, {1, 2, 3}));

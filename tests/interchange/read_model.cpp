@@ -59,7 +59,7 @@ TEST(ReadModel, RefusesMissingFilesAndUnknownFormats) {
     EXPECT_NE(unknown.error().message().find("glTF, OBJ, STL, PLY, COLLADA, AC3D or VRML 2.0"), std::string::npos);
 }
 
-TEST(ReadModel, RefusesNumbersThatAreNoPositions) {
+TEST(ReadModel, RefusesNonFiniteAndHugePositions) {
     const ScratchFolder scratch;
     for (const char* number : {"nan", "inf", "-inf", "1e300"}) {
         const std::string obj = std::string("v 0 0 0\nv 1 0 0\nv 0 ") + number + " 0\nf 1 2 3\n";

@@ -196,7 +196,7 @@ TEST(ReadPly, RefusesVerticesTwiceFacesWithoutAListAndStripsBeyondTheVertices) {
     EXPECT_EQ(refusal(ascii(vertex_header, vertices)), "holds no triangles");
 }
 
-TEST(ReadPly, HasNormalsTextureAndColour) {
+TEST(ReadPly, ReadsNormalsTexturesAndColours) {
     const ScratchFolder scratch;
     const auto png = encode_png({1, 1, {255, 0, 0, 255}});
     scratch.write("my wall.png", {png.begin(), png.end()});

@@ -152,7 +152,7 @@ TEST_F(ReadVrml, SurfacesThatAreTooManyShareOneWithTextureOrWithout) {
     }
 }
 
-TEST_F(ReadVrml, EndsWithWhatHasNoEnd) {
+TEST_F(ReadVrml, RefusesRecursionAndExponentialReuse) {
     // A node inside of itself; deeply nested nodes; one node used 2^40 times.
     EXPECT_FALSE(read("DEF A Group { children [ " + box + " USE A ] }"));
     std::string deep;
@@ -166,7 +166,7 @@ TEST_F(ReadVrml, EndsWithWhatHasNoEnd) {
     EXPECT_FALSE(read(many));
 }
 
-TEST_F(ReadVrml, SurvivesIndicesAndNumbersThatAreNone) {
+TEST_F(ReadVrml, SurvivesInvalidIndicesAndNumbers) {
     const std::string points = "Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, 1 0 0, 0 1 0] } ";
     for (const char* index :
          {"0 1 1000000000 -1", "0 1 3 -1", "-5 -6 -7 -1", "0 -1 1 -1 2", "99999999999999999999 1 2 -1"}) {

@@ -171,14 +171,14 @@ protected:
     std::size_t refused_ = 0;
 };
 
-TEST_F(Refusals, WholeFilesAreRead) {
+TEST_F(Refusals, DoNotFollowFromValidFiles) {
     for (const Whole& whole : whole_files()) {
         if (whole.companion) scratch_.write(whole.companion, whole.companion_content);
         EXPECT_EQ(reason(whole.name, whole.content), "") << whole.name;
     }
 }
 
-TEST_F(Refusals, OfFilesThatBreakOff) {
+TEST_F(Refusals, NameAReasonForTruncatedFiles) {
     for (const Whole& whole : whole_files()) {
         if (whole.companion) scratch_.write(whole.companion, whole.companion_content);
         for (std::size_t size = 0; size < whole.content.size(); size += whole.content.size() / 100 + 1)
@@ -188,7 +188,7 @@ TEST_F(Refusals, OfFilesThatBreakOff) {
     EXPECT_GT(refused_, 500u);
 }
 
-TEST_F(Refusals, OfFilesWithWrongBytes) {
+TEST_F(Refusals, NameAReasonForWrongBytes) {
     for (const Whole& whole : whole_files()) {
         if (whole.companion) scratch_.write(whole.companion, whole.companion_content);
         for (const char wrong : {'\0', '\xff', '9', '{', '"'}) {
@@ -202,7 +202,7 @@ TEST_F(Refusals, OfFilesWithWrongBytes) {
     EXPECT_GT(refused_, 200u);
 }
 
-TEST_F(Refusals, OfFilesOfAnotherFormat) {
+TEST_F(Refusals, NameAReasonForFilesOfAnotherFormat) {
     const std::string picture("\x89PNG\r\n\x1a\n", 8), archive("PK\3\4", 4), page = "<!DOCTYPE html><html><body>404";
     for (const Whole& whole : whole_files()) {
         for (const std::string& other : {picture, archive, page, std::string(1000, '\0'), std::string(1000, '\xff')})
@@ -236,7 +236,7 @@ TEST_F(Refusals, NameWhatIsWrongInAGltf) {
 }
 
 // Missing textures are left out with a warning that says why.
-TEST_F(Refusals, AreNoneForMissingTextures) {
+TEST_F(Refusals, DoNotFollowFromMissingTextures) {
     scratch_.write("cube.mtl", "newmtl m\nmap_Kd lost.png\n");
     const auto read = read_model(scratch_.write("cube.obj", cube_obj("mtllib cube.mtl\nusemtl m\n")));
     ASSERT_TRUE(read) << read.error().message();
@@ -244,7 +244,7 @@ TEST_F(Refusals, AreNoneForMissingTextures) {
     EXPECT_NE(read->warnings[0].find("lost.png"), std::string::npos) << read->warnings[0];
 }
 
-TEST_F(Refusals, OfFoldersAndUnreadableFiles) {
+TEST_F(Refusals, NameAReasonForFoldersAndUnreadableFiles) {
     for (const Whole& whole : whole_files()) {
         std::filesystem::create_directories(scratch_.path() / "folder" / whole.name);
         const auto read = read_model(scratch_.path() / "folder" / whole.name);

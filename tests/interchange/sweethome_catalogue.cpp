@@ -41,7 +41,7 @@ TEST(SweethomeCatalogue, RefusesArchivesWithoutAList) {
     EXPECT_NE(empty.error().why.find("no Sweet Home 3D"), std::string::npos);
 }
 
-TEST(SweethomeCatalogue, LeavesOutPiecesThatCannotBe) {
+TEST(SweethomeCatalogue, LeavesOutImpossiblePieces) {
     const ScratchFolder scratch;
     const std::string list =
         "name#1=No size\nmodel#1=/m.obj\n"

@@ -20,7 +20,7 @@ TEST(ArcTangent, AgreesWithTheLibrarysAllAround) {
     }
 }
 
-TEST(ArcTangent, KnowsTheAxes) {
+TEST(ArcTangent, IsExactOnTheAxes) {
     constexpr double pi = std::numbers::pi;
     EXPECT_EQ(arc_tangent(0, 0), 0);
     EXPECT_EQ(arc_tangent(0, 2), 0);

@@ -12,14 +12,14 @@ struct WidthKernels {
 };
 constinit const WidthKernels WidthKernels::lanes_4{4}, WidthKernels::lanes_8{8}, WidthKernels::lanes_16{16};
 
-TEST(KernelWidth, WidthsThatNobodyCompiledAreRefused) {
+TEST(KernelWidth, WidthsThatWereNotCompiledAreRefused) {
     for (const int lanes : {-4, 0, 1, 2, 5, 12, 32, 64}) {
         EXPECT_FALSE(has_lanes(lanes)) << lanes;
         EXPECT_EQ(kernels_of<WidthKernels>(lanes), nullptr) << lanes;
     }
 }
 
-TEST(KernelWidth, EveryProcessorHasFour) {
+TEST(KernelWidth, EveryProcessorSupportsFour) {
     EXPECT_TRUE(has_lanes(4));
     ASSERT_NE(kernels_of<WidthKernels>(4), nullptr);
 }

@@ -265,7 +265,7 @@ TEST_F(CatalogChangesTest, TheSceneFollowsAChangeOfKindWithItsJoints) {
     }
 }
 
-TEST_F(CatalogChangesTest, TheValuesOfAScaledThingAreToldAsTheModelHasThem) {
+TEST_F(CatalogChangesTest, TheValuesOfAScaledEntityAreReportedAsTheModelHasThem) {
     const json index = run("entity.add", {{"entity", {{"model", key(0)}, {"scale", 2}}}}).at("index");
     const json answer = run("entity.attributes", {{"index", index}});
     EXPECT_NEAR(row_of(answer, "mass").at("value").get<double>(), 8 * value(key(0), "mass").get<double>(), 1e-9);
@@ -278,7 +278,7 @@ TEST_F(CatalogChangesTest, TheValuesOfAScaledThingAreToldAsTheModelHasThem) {
     }
 }
 
-TEST_F(CatalogChangesTest, AllClientsAreToldAlsoOfWhatOtherProgramsDo) {
+TEST_F(CatalogChangesTest, AllClientsHearOfChangesByOtherPrograms) {
     forget_events();
     change({{"words", "oak chair"}}, "mass", 8, 3);
     const json event = events("catalog").front();
@@ -331,7 +331,7 @@ TEST_F(CatalogChangesTest, TwoClientsAndAnotherProgramAtOnceLoseNothing) {
 }
 
 // A long command reports its progress, and the client that sent it may stop it: then nothing is changed.
-TEST_F(CatalogChangesTest, LongWorkTellsHowFarItIsAndMayBeStopped) {
+TEST_F(CatalogChangesTest, LongCommandsReportProgressAndCanBeStopped) {
     constexpr int stools = 8000;
     const std::int64_t chair = other_->model(key(0))->id;
     std::vector<catalog::ModelVariant> variants;

@@ -44,7 +44,7 @@ TEST(ConnectionBook, TheLongestIdleOfTheSameAddressMakesRoom) {
     EXPECT_FALSE(places[2].become_viewer());
 }
 
-TEST(ConnectionBook, ViewersAreCountedApart) {
+TEST(ConnectionBook, ViewersHaveALimitOfTheirOwn) {
     ConnectionBook book(small);
     auto a = book.admit("10.0.0.1"), b = book.admit("10.0.0.1"), c = book.admit("10.0.0.1");
     EXPECT_TRUE(a->become_viewer());

@@ -62,7 +62,7 @@ protected:
     }
 };
 
-TEST_F(DebugFrames, ComeToWhoAskedAndSayWhatWasAskedFor) {
+TEST_F(DebugFrames, GoToClientsThatAskedAndContainWhatTheyAskedFor) {
     run("simulation.step", {{"count", 3}});
     EXPECT_EQ(thread_->take_debug_frame(1), nullptr);
     run("debug.draw", {{"show", {"shapes", "contacts"}}});
@@ -78,7 +78,7 @@ TEST_F(DebugFrames, ComeToWhoAskedAndSayWhatWasAskedFor) {
     EXPECT_EQ(thread_->take_debug_frame(2), nullptr);
 }
 
-TEST_F(DebugFrames, AreTheClientsOwnAndEndWhenItSaysSoOrLeaves) {
+TEST_F(DebugFrames, BelongToOneClientAndEndWhenItSaysSoOrLeaves) {
     run("debug.draw", {{"show", {"bounds"}}}, 1);
     run("debug.draw", {{"show", {"masses"}}}, 2);
     EXPECT_EQ(Read(*frame(1)).flags, 2u);

@@ -8,7 +8,7 @@ namespace {
 
 using nlohmann::json;
 
-TEST_F(SceneThreadTest, WhatIsNoCommandIsRefused) {
+TEST_F(SceneThreadTest, TextThatIsNoCommandIsRefused) {
     for (const char* message : {"", "{", "[]", "null", "\xff", R"({"id": "a", "command": "hello"})",
                                 R"({"id": 1e400, "command": "hello"})", R"({"id": 1})"})
         EXPECT_EQ(ask(message).at("ok"), false) << message;
@@ -38,7 +38,7 @@ TEST_F(SceneThreadTest, AMillionBracketsAreRefusedAndTheServerGoesOn) {
         << "brackets in a text nest nothing";
 }
 
-TEST_F(SceneThreadTest, StepsAndResetsTellWhatMoves) {
+TEST_F(SceneThreadTest, StepsAndResetsReportWhatMoved) {
     run("entity.add",
         {{"entity", {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}, {"pose", {{"position", {0, 3, 0}}}}}}});
     forget_events();
@@ -55,7 +55,7 @@ TEST_F(SceneThreadTest, StepsAndResetsTellWhatMoves) {
     EXPECT_EQ(told[0].at("step"), 0);
 }
 
-TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreTold) {
+TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreReported) {
     run("scene.load", {{"text", R"({"embody_scene": 1, "title": "Told"})"}, {"file", "told.json"}});
     EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
     const auto refusal = [&](const char* gravity) {
@@ -71,7 +71,7 @@ TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreTold) {
 }
 
 // The network thread asks for these while the scene thread is busy; it must not wait.
-TEST_F(SceneThreadTest, TheDocumentComesAfterTheCommandInHandAndNobodyWaitsForIt) {
+TEST_F(SceneThreadTest, TheDocumentArrivesAfterTheCurrentCommandAndTheCallDoesNotWait) {
     thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
     std::promise<scene::Document> taken;
     thread_->request_document([&](scene::Document document) { taken.set_value(std::move(document)); });
@@ -83,7 +83,7 @@ TEST_F(SceneThreadTest, TheDocumentComesAfterTheCommandInHandAndNobodyWaitsForIt
     EXPECT_EQ(document.get().entities.size(), 1u);
 }
 
-TEST_F(SceneThreadTest, WhatIsNotSavedIsRescuedWhileACommandRuns) {
+TEST_F(SceneThreadTest, UnsavedChangesAreSavedWhileACommandRuns) {
     run("scene.settings", {{"title", "Rescued"}});
     thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
     const Result<void> rescued = thread_->rescue();

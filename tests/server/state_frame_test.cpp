@@ -39,7 +39,7 @@ TEST(StateFrame, HasTheLayoutOfTheProtocol) {
     EXPECT_EQ(read<std::uint8_t>(frame, 32 + 32), 2);
 }
 
-TEST(StateFrame, NothingNewIsNoFrame) {
+TEST(StateFrame, AFrameWithoutNewsIsEmpty) {
     StateBoard board;
     EXPECT_EQ(board.frame_since(0).bytes, "");
     board.publish({entity(1, 0, 0)}, 0, 0, false);
@@ -116,7 +116,7 @@ TEST(PointSets, HaveTheLayoutOfTheProtocolAndLoseLessThanAStep) {
     }
 }
 
-TEST(PointSets, AreSentWhereSomethingMovedAndToWhoComesLater) {
+TEST(PointSets, AreSentAfterMovesAndToClientsThatConnectLater) {
     SamplePoints points;
     points.at = {{0, 0, 0}, {1, 1, 1}};
     StateBoard board;

@@ -23,7 +23,7 @@ protected:
     test::TemporaryFolder folder_;
 };
 
-TEST_F(UploadStoreTest, AFileIsThereUnderItsNameAndGoesWithItsObject) {
+TEST_F(UploadStoreTest, AFileHasItsNameAndIsRemovedWithItsObject) {
     auto store = UploadStore::open(uploads());
     ASSERT_TRUE(store.ok()) << store.error().message();
     auto upload = (*store)->begin("chair.glb");

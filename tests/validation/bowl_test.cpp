@@ -269,7 +269,7 @@ TEST(Bowls, WeightedBallSwingsAboutItsHeavySide) {
 }
 
 // Small swings: T = 2 pi sqrt((R - r) / g), of what rolls sqrt(7/5) times as long. Told by the fifth turn.
-TEST(Bowls, SwingTakesItsTime) {
+TEST(Bowls, OscillationHasTheKnownPeriod) {
     for (const std::string kind : {"pipe", "bowl", "field pipe", "box pipe"}) {
         for (const double mu : {0.0, 0.5}) {
             Random random(1);
@@ -314,7 +314,7 @@ MeshShape strip(const std::vector<std::array<double, 2>>& profile) {
 
 // Without friction from level ground onto a ramp: over an edge of a smooth surface all of the speed goes on, over a
 // real one what points along the ramp.
-TEST(Bowls, RampOfTwentyDegreesTakesItsShareAndOneOfTenNone) {
+TEST(Bowls, RampOfTwentyDegreesTakesTheKnownEnergyAndOneOfTenNone) {
     for (const double degrees : {10.0, 20.0}) {
         for (const double speed : {0.5, 3.0}) {
             const double angle = in_degrees(degrees), r = 0.05;
@@ -532,7 +532,7 @@ TEST(Bowls, SlowCollisionsOfBallsThatRollDoNotBounce) {
 }
 
 // What two balls do is the same whether two others, far away, are still there.
-TEST(Bowls, BallsThatRollRememberNothingOfOthers) {
+TEST(Bowls, RollingBallsAreNotAffectedByDistantBalls) {
     const auto speed_after = [](bool others_go) {
         auto world = make_world({.air_density = 0});
         const Material material{.friction_static = 0.1,

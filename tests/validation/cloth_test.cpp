@@ -70,7 +70,7 @@ double height_above(std::span<const Vec3> nodes, const Cloth& cloth, Vec3 point,
     return height;
 }
 
-TEST(ClothInWorld, NoRimOrCornerLooksThroughATablecloth) {
+TEST(ClothInWorld, NoEdgeOrCornerComesThroughATablecloth) {
     const auto world = make_world({});
     const Vec3 half{0.4, 0.35, 0.4};
     add_body(*world, BoxShape{half}, {0, half.y, 0});

@@ -83,7 +83,7 @@ TEST(Determinism, AnotherInputGivesOtherBits) {
     EXPECT_NE(first->state_hash(), second->state_hash());
 }
 
-TEST(Heap, ComesToRestAndSleepsWithoutPassingThroughTheFloor) {
+TEST(Pile, ComesToRestAndSleepsWithoutPassingThroughTheFloor) {
     const auto world = make_heap();
     const double start = energy(*world);
     for (int i = 0; i < 60 * 20; ++i) {

@@ -32,7 +32,7 @@ TEST(GrainHeaps, SlopeTheSameForGrainsOfFiveMillimetres) { expect_slope({.diamet
 TEST(GrainHeaps, SlopeTheSameForGrainsOfThreeCentimetres) { expect_slope({.diameter = 0.03}); }
 TEST(GrainHeaps, SlopeTheSameForTwiceAsMany) { expect_slope({.grains = 3000}); }
 
-TEST(GrainMaterial, GrowsRougherWithTheAngleAndInProportionToTheSize) {
+TEST(GrainMaterial, HasMoreFrictionForSteeperAnglesAndRollingFrictionInProportionToTheSize) {
     Material last = grain_material(0, 0.01);
     for (double angle = 1; angle <= 80; angle += 1) {
         const Material material = grain_material(angle, 0.01);

@@ -11,10 +11,10 @@
 namespace embody::physics {
 namespace {
 
-class CollapsingHeap : public testing::TestWithParam<double> {};
+class CollapsingPile : public testing::TestWithParam<double> {};
 
 // Balls and boxes from up to 10 m: hundreds of impacts a step.
-TEST_P(CollapsingHeap, NeverGainsEnergy) {
+TEST_P(CollapsingPile, NeverGainsEnergy) {
     const auto world = make_world({});
     const Material material{.restitution = GetParam()};
     add_plane(*world, material);
@@ -39,12 +39,12 @@ TEST_P(CollapsingHeap, NeverGainsEnergy) {
     EXPECT_LT(least, 0.6 * start);
 }
 
-INSTANTIATE_TEST_SUITE_P(Restitution, CollapsingHeap, testing::Values(0.0, 0.3, 0.8),
+INSTANTIATE_TEST_SUITE_P(Restitution, CollapsingPile, testing::Values(0.0, 0.3, 0.8),
                          [](const auto& test) { return "Percent" + std::to_string(std::lround(100 * test.param)); });
 
 // Seen from the start of a step a cube beside the ball's path lies ahead of it. By the time the ball gets there it does
 // not: the region of the start of the step must not stop it.
-TEST(HeapImpact, BallThatPassesTheEdgeOfACarriedCubeIsNotHeldUp) {
+TEST(PileImpact, BallThatPassesTheEdgeOfACarriedCubeIsNotHeldUp) {
     const auto world = make_world({});
     add_plane(*world, {});
     const auto cube = world->create_shape(BoxShape{{0.5, 0.5, 0.5}}).value();

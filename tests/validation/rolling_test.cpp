@@ -116,7 +116,7 @@ TEST(Rolling, EveryRoundShapeKeepsItsSpeedOnEveryGround) {
     }
 }
 
-TEST(Rolling, WhatSlidesEndsAtItsShareOfTheFirstSpeed) {
+TEST(Rolling, SlidingBodiesEndAtTheKnownFractionOfTheirSpeed) {
     for (const std::string ground : {"plane", "box", "mesh"}) {
         for (const double speed : {1.0, 5.0}) {
             for (const auto& [shape, share] :

@@ -54,7 +54,7 @@ TEST(StructureList, HasDifferentNamesAndTheRightCounts) {
 }
 
 // Once asleep nothing stirs them.
-TEST(Rest, TenMinutesMoveNothing) {
+TEST(Rest, NothingMovesInTenMinutes) {
     for (const std::string_view name : {"column_10", "card_house", "arch", "mass_ratio_1000", "pyramid_10"}) {
         const Structure structure = find_structure_builder(name)->build({});
         physics::run(*structure.world, 10);

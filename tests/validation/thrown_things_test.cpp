@@ -69,7 +69,7 @@ TEST(NothingPassesThroughTheGround, WhenThrownAlone) {
     }
 }
 
-TEST(NothingPassesThroughTheGround, WhenFallingInAHeap) {
+TEST(NothingPassesThroughTheGround, WhenFallingInAPile) {
     Thrown thrown = throw_things(216, 0.6, 0.1, 1);
     EXPECT_LT(deepest(thrown, 6), 0.05);
 }

@@ -87,7 +87,7 @@ std::string answers(const ScratchFolder& scratch, FrameKind kind, const std::str
     return "cat '" + answer.string() + "'\nexec sleep 1000";
 }
 
-TEST(ConfinedPool, WaitingIsNotWorking) {
+TEST(ConfinedPool, WaitingCountsAsNoProcessorTime) {
     const ScratchFolder scratch;
     const auto late = fake_worker(scratch, "sleep 2\n" + answers(scratch, FrameKind::failed, "late"));
     EXPECT_EQ(reason_from(late, {.processor_seconds_per_model = 0.5}), "late");
@@ -100,7 +100,7 @@ std::filesystem::path fake_worker_that_recovers(const ScratchFolder& scratch, co
     return fake_worker(scratch, "test -e " + mark + " || { echo x > " + mark + "; " + death + "; }\n" + rest);
 }
 
-TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
+TEST(ConfinedPool, RetriesAFailureThatALoadedMachineMayHaveCaused) {
     for (const std::string death : {"kill -KILL $$", "kill -SEGV $$", "exec sleep 1000"}) {
         const ScratchFolder scratch;
         const auto worker = fake_worker_that_recovers(scratch, death, answers(scratch, FrameKind::failed, "answered"));
@@ -115,7 +115,7 @@ TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
 }
 
 // A worker whose memory a file may have damaged is not used for the next file.
-TEST(ConfinedPool, TheSecondTryIsByAWorkerOfItsOwn) {
+TEST(ConfinedPool, ANewWorkerMakesTheSecondTry) {
     const ScratchFolder scratch;
     const std::string lives = "'" + scratch.write("lives", "0").string() + "'";
     const auto worker = fake_worker(scratch, "n=$(cat " + lives + "); echo $((n + 1)) >" + lives +
@@ -129,7 +129,7 @@ TEST(ConfinedPool, TheSecondTryIsByAWorkerOfItsOwn) {
     }
 }
 
-TEST(ConfinedPool, AModelThatNeedsMoreMemoryHasItAlone) {
+TEST(ConfinedPool, AModelThatNeedsMoreMemoryRunsAlone) {
     const ScratchFolder scratch;
     // A worker's second argument is its address space. Half of the budget, for two workers at a time, is too little.
     const std::string more = answers(scratch, FrameKind::out_of_memory, "too little");
@@ -177,7 +177,7 @@ TEST(ConfinedPool, TakesNothingFromAWorkerThatLies) {
     EXPECT_EQ(says(as_text(frame(FrameKind::ready, {}))), "the import worker spoke out of turn");
 }
 
-TEST(ConfinedPool, RefusesAModelThatIsNone) {
+TEST(ConfinedPool, RefusesAnInvalidModel) {
     const ScratchFolder scratch;
     const std::vector<std::uint8_t> nonsense(100, 0xFF);
     const auto answer = scratch.write("answer", as_text(frame(FrameKind::prepared, nonsense)));

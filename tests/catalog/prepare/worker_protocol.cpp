@@ -80,7 +80,7 @@ TEST(WorkerProtocol, RefusesPayloadsOfEveryWrongLength) {
     EXPECT_FALSE(model_from_bytes(longer));
 }
 
-TEST(WorkerProtocol, RefusesModelsThatCannotBe) {
+TEST(WorkerProtocol, RefusesImpossibleModels) {
     const auto refuses = [](auto change) {
         PreparedModel model = a_model();
         change(model);
@@ -107,7 +107,7 @@ TEST(WorkerProtocol, RefusesModelsThatCannotBe) {
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.thumbnail.resize(5 << 20); }));
 }
 
-TEST(WorkerProtocol, ARefusalWithoutAReasonIsNone) {
+TEST(WorkerProtocol, ARefusalWithoutAReasonIsAnErrorOfTheWorker) {
     EXPECT_EQ(error_from_bytes(to_bytes(Error{"chair.obj", ""})).where, "import worker");
     EXPECT_FALSE(error_from_bytes(to_bytes(Error{"chair.obj", ""})).why.empty());
 }

@@ -102,7 +102,7 @@ TEST(FillWithTetrahedra, NodesOutsideLieOnTheSurface) {
     for (const std::uint32_t node : outer) EXPECT_NEAR(length(filling.mesh.nodes[node]), 1, 0.003);
 }
 
-TEST(FillWithTetrahedra, CountIsNearWhatIsAskedFor) {
+TEST(FillWithTetrahedra, CountIsWithinAThirdOfTheRequestedOne) {
     for (const int wanted : {200, 1000, 5000, 20000}) {
         for (const TriangleMesh& mesh : {make_sphere(0.3), make_box({1, 0.1, 0.4}), make_torus(0.5, 0.15)}) {
             const auto count = static_cast<double>(filled(mesh, {.tetrahedra = wanted}).mesh.tetrahedra.size());
@@ -160,7 +160,7 @@ TEST(FillWithTetrahedra, OpenTurnedAndOverlappingSurfacesAreFilled) {
     expect_volume(pair, 5000, 1.0 * 0.4 * 0.4, 0.03);
 }
 
-TEST(FillWithTetrahedra, PartsThatKeepApartAreTold) {
+TEST(FillWithTetrahedra, SeparatePartsAreReported) {
     TriangleMesh mesh = make_sphere(0.2);
     append(mesh, make_sphere(0.3, 64, 32, {1, 0, 0}));
     append(mesh, make_sphere(0.05, 64, 32, {2, 0, 0}));
@@ -183,7 +183,7 @@ TEST(FillWithTetrahedra, BoxesThatTouchAtAnEdgeComeApart) {
     for (const double cell : {0.5, 0.25, 0.2, 0.13}) expect_sound(filled(mesh, {.cell = cell}));
 }
 
-TEST(FillWithTetrahedra, HeapsCoarserThanTheirPartsAreSound) {
+TEST(FillWithTetrahedra, OverlappingBoxesInCoarseCellsAreSound) {
     Random random(3);
     for (int i = 0; i < 12; ++i) {
         TriangleMesh mesh;
@@ -196,7 +196,7 @@ TEST(FillWithTetrahedra, HeapsCoarserThanTheirPartsAreSound) {
     }
 }
 
-TEST(FillWithTetrahedra, WhatTheCellsMissIsTold) {
+TEST(FillWithTetrahedra, TheVolumeThatCellsMissIsReported) {
     // A ball with a long, thin rod.
     TriangleMesh mesh = make_sphere(0.2);
     append(mesh, make_box({1.5, 0.02, 0.02}, {1.6, 0, 0}));

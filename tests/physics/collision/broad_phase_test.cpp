@@ -36,7 +36,7 @@ TEST(BroadPhase, an_endless_plane_pairs_with_what_moves) {
     EXPECT_EQ(pairs[0], (BroadPhase::Pair{3, 7}));
 }
 
-TEST(BroadPhase, a_removed_body_takes_its_pairs_along) {
+TEST(BroadPhase, removing_a_body_removes_its_pairs) {
     TaskPool one_worker(1);
     BroadPhase phase;
     phase.insert(0, cube_at({}, 1), true);

@@ -76,7 +76,7 @@ struct Standing {
 
 class StandingOn : public testing::TestWithParam<Standing> {};
 
-TEST_P(StandingOn, has_its_whole_region) {
+TEST_P(StandingOn, touches_with_its_whole_face) {
     const Standing& s = GetParam();
     const auto solid = make_shape(s.shape);
     const auto plane = make_shape(PlaneShape{});

@@ -133,7 +133,7 @@ TEST_P(ConvexFuzz, depth_is_that_of_the_best_direction) {
 }
 
 // Resting contacts are shallow: there the normal is the best of all but for what faces are preferred by.
-TEST_P(ConvexFuzz, no_direction_parts_a_shallow_overlap_sooner) {
+TEST_P(ConvexFuzz, no_direction_separates_a_shallow_overlap_by_less) {
     constexpr double depth = 1e-3, preference = 2e-4 + 0.02 * depth;
     const auto solids = all_solids();
     const auto a = make_shape(solids[static_cast<std::size_t>(GetParam())].definition);

@@ -91,7 +91,7 @@ TEST(CoreDistance, IsTheLargestGapOfAllDirections) {
     EXPECT_GT(overlapping, 50);
 }
 
-TEST(CoreDistance, OverlappingBoxesPartAlongTheirLeastDepth) {
+TEST(CoreDistance, OverlappingBoxesSeparateAlongTheirMinimumDepth) {
     Random random(3);
     const auto box = make_shape(BoxShape{{0.5, 0.5, 0.5}});
     for (int trial = 0; trial < 100; ++trial) {

@@ -88,7 +88,7 @@ TEST_P(PolytopeKernelsOf, find_what_a_plain_loop_finds) {
     }
 }
 
-TEST_P(PolytopeKernelsOf, find_nothing_farther_than_all_among_no_vectors) {
+TEST_P(PolytopeKernelsOf, find_nothing_among_no_vectors) {
     const PolytopeKernels* kernels = kernels_of<PolytopeKernels>(GetParam());
     if (kernels == nullptr) GTEST_SKIP() << "not on this processor";
     const double d[3] = {1, 0, 0};

@@ -63,7 +63,7 @@ TEST(ChooseFour, TakesTheCornersOfASquareAndTheDeepest) {
     }
 }
 
-TEST(FeatureNames, AreOfTheMeeting) {
+TEST(FeatureNames, DifferByOrderAndCountOfFeatures) {
     EXPECT_EQ(feature_name({1, 2, 3}), feature_name({1, 2, 3}));
     EXPECT_NE(feature_name({1, 2, 3}), feature_name({1, 3, 2}));
     EXPECT_NE(feature_name({1, 2}), feature_name({1, 2, 0}));

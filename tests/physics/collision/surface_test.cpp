@@ -38,7 +38,7 @@ TEST(Surface, a_slider_never_feels_the_edges_inside_a_flat_floor) {
     }
 }
 
-TEST(Surface, is_not_there_from_behind) {
+TEST(Surface, has_no_contacts_from_behind) {
     const auto floor = make_shape(flat_mesh(4, 1, {-2, 0, -2}));
     for (const auto& [name, definition] : sliders()) {
         const auto slider = make_shape(definition);
@@ -210,7 +210,7 @@ TEST(Surface, a_box_tipping_over_a_step_is_not_pushed_off_by_its_side) {
     }
 }
 
-TEST(Surface, triangles_without_area_are_passed_over) {
+TEST(Surface, triangles_without_area_are_ignored) {
     MeshShape mesh = flat_mesh(2, 1, {-1, 0, -1});
     mesh.triangles.push_back({0, 0, 1});
     mesh.triangles.push_back({0, 1, 2});

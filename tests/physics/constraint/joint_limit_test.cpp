@@ -8,7 +8,7 @@ namespace embody::physics::constraint {
 namespace {
 
 // A hinge pressed against its limit, then let go and pushed off: the limit must not push after it.
-TEST(JointLimit, LetsGoOfWhatLeavesIt) {
+TEST(JointLimit, ReleasesABodyThatMovesAwayFromIt) {
     const auto world = make_world({.gravity = {}});
     const auto door = world->create_body({.mass = {.mass = 1, .inertia = Mat3::diagonal({1, 1, 1})}}).value();
     ASSERT_TRUE(world->create_joint({.joint = HingeJoint{.limit = JointLimit{0, 3}}, .body_b = door}));

@@ -90,7 +90,7 @@ TEST(BodyFeatures, LieOnTheirShapes) {
     EXPECT_EQ(both.size(), 9u);
 }
 
-TEST(FreeMotion, KeepsWhatTheWholeHadAndWasGiven) {
+TEST(FreeMotion, KeepsMomentaAndGivenDisplacements) {
     Random random(2);
     for (int trial = 0; trial < 20; ++trial) {
         std::vector<Vec3> places, given;

@@ -31,7 +31,7 @@ TEST(FluidFaces, VelocityAroundAFaceIsExactForLinearFields) {
     }
 }
 
-TEST(FluidFaces, NothingKnownStaysUnknown) {
+TEST(FluidFaces, UnknownVelocitiesWithoutKnownOnesStayUnknown) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 8, 8}));
     for (auto& known : block.grid.known) std::ranges::fill(known, 0);
     extrapolate(block.grid, block.grid.velocity, 3, block.workers);

@@ -133,7 +133,7 @@ TEST(Fluid, APartGoesOnInAnotherFluid) {
     EXPECT_EQ(world->move_between_fluids(coarse, {0, 1000}).error().where, "from");
 }
 
-TEST(Fluid, ALumpInFreeFallKeepsItsMomentumButForGravity) {
+TEST(Fluid, LiquidInFreeFallKeepsItsMomentumButForGravity) {
     for (const double viscosity : {0.0, 20.0}) {
         auto world = make_world();
         FluidDefinition definition = cube_of_water(0.2, 0.02);
@@ -202,7 +202,7 @@ FluidRecord fluid_gone_wrong(const ObstacleAccess& world, const FluidDefinition&
     return record;
 }
 
-TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
+TEST(Fluid, NonFiniteNumbersFreezeItAndAreReported) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     for (const Vec3 velocity : {Vec3{nan, 0, 0}, Vec3{0, -inf, 0}, Vec3{3e38, 3e38, 0}}) {
         WorldState world;
@@ -223,7 +223,7 @@ TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
     }
 }
 
-TEST(Fluid, NumbersThatAreNonePushNoBody) {
+TEST(Fluid, NonFiniteNumbersPushNoBody) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const auto shape = std::move(CollisionShape::create(BoxShape{{0.05, 0.05, 0.05}})).value();
     FluidObstacle obstacle{.shape = shape.get(), .inverse_mass = 1, .inverse_inertia = Mat3::identity()};
@@ -239,7 +239,7 @@ TEST(Fluid, NumbersThatAreNonePushNoBody) {
     EXPECT_EQ(obstacle.angular_impulse, Vec3{});
 }
 
-TEST(Fluid, DegenerateLumpsOfLiquidAreNoTrouble) {
+TEST(Fluid, DegenerateLiquidsStayFinite) {
     auto world = make_world();
     add_basin(*world);
     // One particle, all in one place, and a sheet thinner than a particle.

@@ -36,7 +36,7 @@ TEST(FluidGrid, CoversNothingWhereThereAreNoParticles) {
     EXPECT_TRUE(grid.tiles().empty());
 }
 
-TEST(FluidGrid, GivesUpPlacesThatAreNoneOrCannotBeCounted) {
+TEST(FluidGrid, RemovesParticlesAtNonFiniteOrHugePositions) {
     TaskPool workers(1);
     FluidGrid grid(h);
     std::vector<FluidParticle> particles{at(0, nan, 0), at(0.5f, 0.5f, 0.5f), at(infinite, 0, 0), at(0, 0, -3e30f)};
@@ -49,7 +49,7 @@ TEST(FluidGrid, GivesUpPlacesThatAreNoneOrCannotBeCounted) {
     EXPECT_TRUE(lost.empty());
 }
 
-TEST(FluidGrid, GivesUpStraysThatWouldNeedTooLargeABox) {
+TEST(FluidGrid, RemovesStrayParticlesThatWouldNeedTooLargeABox) {
     TaskPool workers(1);
     FluidGrid grid(h);
     std::vector<FluidParticle> particles = fill_cells(h, {0, 0, 0}, {6, 6, 6});
@@ -198,7 +198,7 @@ TEST(FourNumbers, AreReadAndWrittenInTheOrderOfTheirPairs) {
     for (int i = 0; i < 4; ++i) EXPECT_EQ(four[i], static_cast<float>(i + 5));
 }
 
-TEST(FluidParticles, ReachOfNoneOrOfWhatIsNoNumberIsInfinite) {
+TEST(FluidParticles, ReachOfNoParticlesOrOfNonFiniteOnesIsInfinite) {
     TaskPool workers(1);
     EXPECT_EQ(reach_of({}, workers).farthest(), infinite);
     for (int i = 0; i < 6; ++i) {
@@ -234,7 +234,7 @@ TEST(FluidParticles, ReachIsTheBoxOfTheirPlaces) {
     }
 }
 
-TEST(FluidParticles, UsualSpeedLeavesOutOneInSoMany) {
+TEST(FluidParticles, UsualSpeedIgnoresTheFastestOneInSoMany) {
     TaskPool workers(1);
     EXPECT_EQ(usual_speed_of({}, 200, workers), 0);
     Random random(6);

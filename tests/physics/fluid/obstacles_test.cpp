@@ -202,7 +202,7 @@ struct Water : LiquidBlock {
     explicit Water(std::span<FluidObstacle> met = {}) : LiquidBlock(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}), met) {}
 };
 
-TEST(ObstacleRegion, SharesOfEachDirectionSumToTheVolume) {
+TEST(ObstacleRegion, FractionsOfEachDirectionSumToTheVolume) {
     Random random(7);
     Water water;
     for (int trial = 0; trial < 5; ++trial) {

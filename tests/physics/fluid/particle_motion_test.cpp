@@ -109,7 +109,7 @@ TEST(ParticleCollider, NothingPassesAWallThinnerThanACell) {
     }
 }
 
-TEST(Drops, AreWhatNoLiquidCellIsBeside) {
+TEST(Drops, AreParticlesWithoutALiquidCellBesideThem) {
     auto particles = fill_cells(h, {0, 0, 0}, {8, 8, 8});
     LiquidBlock block(h, particles);
     PressureSystem system;

@@ -38,7 +38,7 @@ std::vector<double> multiply(const FluidGrid& grid, const PressureSystem& system
     return y;
 }
 
-TEST(PressureSystem, GapIsTheShareOfTheWayToTheSurface) {
+TEST(PressureSystem, GapIsTheFractionOfTheDistanceToTheSurface) {
     const PressureSystem system;
     EXPECT_FLOAT_EQ(system.gap_fraction(-0.25f, 0.75f), 0.25f);
     EXPECT_FLOAT_EQ(system.gap_fraction(-0.5f, 0.5f), 0.5f);
@@ -157,7 +157,7 @@ TEST(PressureSystem, StandingWaterHasThePressureOfItsDepth) {
     }
 }
 
-TEST(PressureSystem, ABodyThatItMovesTakesItsShare) {
+TEST(PressureSystem, AFloatingBodyAndTheLiquidKeepTheirMomentum) {
     // A floating box wholly inside of the liquid: momentum goes from one to the other, and none comes to be.
     const auto shape = CollisionShape::create(BoxShape{{0.2, 0.2, 0.2}}).value();
     constexpr double density = 1000, body_mass = 40;

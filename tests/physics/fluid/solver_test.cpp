@@ -49,7 +49,7 @@ TEST(FluidSolver, OneParticleFallsFreely) {
     EXPECT_NEAR(solver.conserved({}).linear_momentum.x, 1000 * h * h * h / 8, 1e-6);
 }
 
-TEST(FluidSolver, NumbersThatAreNoneAreTold) {
+TEST(FluidSolver, NonFiniteNumbersAreReported) {
     TaskPool workers(1);
     const auto shape = CollisionShape::create(BoxShape{{0.2, 0.2, 0.2}}).value();
     FluidObstacle box{.shape = shape.get(), .pose = {{0.4, -0.2, 0.4}, {}}, .center = {0.4, -0.2, 0.4}};

@@ -52,7 +52,7 @@ TEST(Extremes, BoxesFromAMillimetreToAKilometreLieOnTheFloor) {
     }
 }
 
-TEST(Extremes, TooFastSpinsAndFlightsAreSlowedAndTold) {
+TEST(Extremes, TooFastMotionIsSlowedAndReported) {
     Floor floor;
     const auto ball = floor.world->create_shape(SphereShape{0.1}).value();
     const auto body =
@@ -67,7 +67,7 @@ TEST(Extremes, TooFastSpinsAndFlightsAreSlowedAndTold) {
     EXPECT_NEAR(length(floor.world->angular_velocity(body)), 2e4, 1);
 }
 
-TEST(Extremes, ThousandsOfBodiesInOnePointAreSteppedAndTold) {
+TEST(Extremes, ThousandsOfBodiesInOnePointAreSteppedAndReported) {
     Floor floor;
     const auto ball = floor.world->create_shape(SphereShape{0.3}).value();
     constexpr int count = 3000;  // tried with 10,000 as well: 4 s a step, 1 GB

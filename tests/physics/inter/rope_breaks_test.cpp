@@ -32,7 +32,7 @@ TEST(RopeBreaks, TensionIsTheWeightBelow) {
     EXPECT_TRUE(world->rope_tensions({}).empty());
 }
 
-TEST(RopeBreaks, AreToldOnceWithPlaceAndTension) {
+TEST(RopeBreaks, AreReportedOnceWithPositionAndTension) {
     const auto world = make_world();
     const auto rope = world->create_deformable(hanging_rope(9));
     ASSERT_TRUE(rope);

@@ -176,7 +176,7 @@ TEST_F(StaleHandles, OfFluidsAreRefused) {
 }
 
 // Handles of one slot, again and again: the last alone is known.
-TEST_F(StaleHandles, AreToldFromThoseThatTookTheirPlace) {
+TEST_F(StaleHandles, AreDistinguishedFromThoseThatReuseTheirSlot) {
     for (int i = 0; i < 20; ++i) {
         const BodyHandle body = world_->create_body({.shape = ball_, .position = {50, 0, 0}}).value();
         EXPECT_EQ(body.index, gone_body_.index);

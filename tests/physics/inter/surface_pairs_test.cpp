@@ -51,7 +51,7 @@ TEST(SurfacePairs, AreSymmetricAndRefuseBadNumbers) {
     EXPECT_TRUE(pairs.set(255, 255, {}).ok());
 }
 
-TEST(SurfacePairs, TheTableSpeaksWhereBothLeaveItToIt) {
+TEST(SurfacePairs, TheTableIsUsedWhereBothMaterialsChooseIt) {
     const SurfacePairs pairs = sample_pairs();
     const Material known = combine(of(wood), of(ice), pairs);
     EXPECT_EQ(known.friction_static, 0.1);

@@ -91,7 +91,7 @@ TEST(DeformableSleep, IsEndedByWhatHappensAround) {
     }
 }
 
-TEST(DeformableSleep, IsNotEndedByWhatDoesNotConcernIt) {
+TEST(DeformableSleep, IsNotEndedByUnrelatedChanges) {
     using Happening = std::function<void(SleepingBrick&)>;
     const std::vector<std::pair<const char*, Happening>> happenings{
         {"a fast body far away",

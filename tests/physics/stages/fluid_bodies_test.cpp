@@ -242,7 +242,7 @@ TEST_F(FluidBodies, TwoPushABodyBySumOfTheirForces) {
 }
 
 // Without gravity nothing sinks, and liquid at rest sleeps where it floats.
-TEST_F(FluidBodies, WithoutGravityALumpAtRestSleeps) {
+TEST_F(FluidBodies, LiquidAtRestWithoutGravitySleeps) {
     use({.gravity = {0, 0, 0}});
     const FluidHandle pool = add_pool();
     run_until_asleep(pool);

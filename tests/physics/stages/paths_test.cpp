@@ -108,7 +108,7 @@ TEST(BodyPaths, WhatIsHeldChangesItsVelocityFromTheStart) {
     EXPECT_LT(length(paths.state_at(brick.body, time).center - there.center), 1e-6);
 }
 
-TEST(ShareAwake, TellsEachAwakeBodyOnce) {
+TEST(ForEachAwake, TellsEachAwakeBodyOnce) {
     for (const int workers : {1, 3}) {
         WorldState world;
         world.workers = std::make_unique<TaskPool>(workers);

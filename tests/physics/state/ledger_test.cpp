@@ -189,7 +189,7 @@ StepAccount account_of_blow(const HingeJoint& hinge, Vec3 carrier_velocity) {
     return *report.account;
 }
 
-TEST(StepAccount, BooksTheBlowOnAMotorsJointAsTheMotors) {
+TEST(StepAccount, BooksTheImpactOnAJointWithAMotorAsTheMotors) {
     HingeJoint hinge;
     const StepAccount free = account_of_blow(hinge, {});
     EXPECT_GT(free.of(StepCause::joints).linear_impulse.y, 0.1);
@@ -206,7 +206,7 @@ TEST(StepAccount, BooksTheBlowOnAMotorsJointAsTheMotors) {
     }
 }
 
-TEST(StepAccount, BooksWhatAMovingCarrierDoesInABlow) {
+TEST(StepAccount, BooksTheWorkOfAMovingCarrierInAnImpact) {
     for (const Vec3 velocity : {Vec3{5, 0, 0}, Vec3{0, 5, 0}, Vec3{0, 0.3, 0}}) {
         const StepAccount account = account_of_blow({}, velocity);
         EXPECT_NEAR(account.unexplained_energy, 0, 1e-4) << velocity.x << " " << velocity.y;

@@ -27,7 +27,7 @@ TEST(GeometryKey, IsEqualWhereKindAndEveryNumberAre) {
     }
 }
 
-TEST(GeometryKey, NobodyElseHasWhatIsLargeOrThereOnce) {
+TEST(GeometryKey, IsNotSharedForPlanesAndMeshes) {
     const MeshShape mesh{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 2, 1}}};
     for (const ShapeDefinition& shape : {ShapeDefinition(PlaneShape{}), ShapeDefinition(mesh)})
         EXPECT_FALSE(key_of(shape).is_shared());

@@ -360,7 +360,7 @@ TEST(Fluids, HeldByAJointAreRigidWithANote) {
     EXPECT_NE(simulation->points(index), nullptr);
 }
 
-TEST(Fluids, ThinnerThanTheirParticlesAreToldOf) {
+TEST(Fluids, ThinnerThanTheirParticlesAreReported) {
     Document document;
     add_box(document, "Puddle", {0.5, 1e-6, 0.5}, {0, 0.01, 0}, water(2000));
     add_box(document, "Pool", {0.1, 0.1, 0.1}, {3, 0.2, 0}, water(2000));
@@ -369,7 +369,7 @@ TEST(Fluids, ThinnerThanTheirParticlesAreToldOf) {
     EXPECT_NE(simulation->notes()[0].find("Puddle is 0.002 mm thick"), std::string::npos) << simulation->notes()[0];
 }
 
-TEST(Fluids, OfOtherMatterInEachOtherAreToldOf) {
+TEST(Fluids, OfDifferentMatterThatOverlapAreReported) {
     const auto notes_of = [](double density, double apart) {
         Document document;
         add_box(document, "Water", {0.1, 0.1, 0.1}, {0, 0.2, 0}, water(2000));

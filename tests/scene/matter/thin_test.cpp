@@ -261,7 +261,7 @@ TEST(RopeEntity, HangsAsDeepAsItsSlackSays) {
     EXPECT_NEAR(lowest(), 3 - 2 * std::sqrt(0.02 * 3 / 8), 0.05) << "wound in while it hangs";
 }
 
-TEST(RopeEntity, IsMetByARayAndByWhatFallsOnIt) {
+TEST(RopeEntity, IsHitByRaysAndFallingBodies) {
     Document document = a_rope(2, 0);
     Entity ball = document.entities[1];
     ball.index = 3;
