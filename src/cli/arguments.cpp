@@ -122,9 +122,9 @@ private:
             "--collection", c.into->collection,
             "Take the files as those of a collection (its unit, axes, licence), or without paths all that "
             "is installed of it: flightgear, kicad, or a description FILE.json");
-        c.app->add_option("--workers", c.into->workers, "Processes that read models (default: one a core)")
+        c.app->add_option("--workers", c.into->workers, "Processes that read models (default: one per core)")
             ->check(CLI::Range(0, 256));
-        c.app->add_flag("--again", c.into->again, "Read also what is unchanged since the last import");
+        c.app->add_flag("--again", c.into->again, "Also read files that are unchanged since the last import");
         add_json(c);
     }
     void add_search() {
@@ -133,7 +133,7 @@ private:
         add_database(c);
         c.app->add_option("words", c.into->words, "Words; their beginnings match too");
         c.app->add_option("--category", c.into->category, "Only this category");
-        c.app->add_option("--limit", c.into->limit, "At most so many")
+        c.app->add_option("--limit", c.into->limit, "Maximum number of models")
             ->capture_default_str()
             ->check(CLI::Range(1, 1000));
         c.app->add_option("--offset", c.into->offset, "Skip so many")->check(CLI::NonNegativeNumber);
@@ -152,9 +152,11 @@ private:
         command.app->add_option("--query", many.query, "In place of a model: all that these words find");
         command.app->add_option("--category", many.category, "In place of a model: all of this category");
         command.app->add_flag("--all", many.all, "In place of a model: every model");
-        command.app->add_flag("--dry-run", many.dry_run, "Say how many and which would be changed, and change nothing");
-        command.app->add_flag("--skip", many.skip,
-                              "Leave out models that an attribute does not concern (else one of them stops it all)");
+        command.app->add_flag("--dry-run", many.dry_run,
+                              "Print how many and which models would change, and change nothing");
+        command.app->add_flag(
+            "--skip", many.skip,
+            "Skip models that an attribute does not apply to (otherwise one of them stops the change)");
     }
     void add_set() {
         auto c = add<SetArguments>("set", "Change attributes of a model, or of many, by hand; survives re-import",
@@ -175,26 +177,27 @@ private:
         add_json(c);
     }
     void add_history() {
-        auto c = add<HistoryArguments>("history", "Tell who changed what by hand, and when",
+        auto c = add<HistoryArguments>("history", "List who changed what by hand, and when",
                                        "embody history --since 7d\n  embody history \"office chair\"");
         add_database(c);
         c.app->add_option("model", c.into->model, "Key, id or unique name of a model (default: all)");
         c.app->add_option("--since", c.into->since,
-                          "Only since then: 2026-11-22, 2026-11-22T14:30 (UTC), 7d (days ago) or 2h");
-        c.app->add_option("--batch", c.into->batch, "Only what was changed at once under this number")
+                          "Only changes since: 2026-11-22, 2026-11-22T14:30 (UTC), 7d (days ago) or 2h");
+        c.app->add_option("--batch", c.into->batch, "Only the batch of changes with this number")
             ->check(CLI::PositiveNumber);
-        c.app->add_option("--limit", c.into->limit, "At most so many values")
+        c.app->add_option("--limit", c.into->limit, "Maximum number of values")
             ->capture_default_str()
             ->check(CLI::Range(1, 1'000'000));
         add_json(c);
     }
     void add_undo() {
-        auto c = add<UndoArguments>("undo", "Take back what was changed by hand at once; of an undo: do it again",
+        auto c = add<UndoArguments>("undo", "Undo a batch of changes by hand; an undo can be undone, too",
                                     "embody undo\n  embody undo 12");
         add_database(c);
-        c.app->add_option("batch", c.into->batch, "Number that `embody history` tells (default: your last)")
+        c.app->add_option("batch", c.into->batch, "Number of the batch in `embody history` (default: your last)")
             ->check(CLI::PositiveNumber);
-        c.app->add_flag("--dry-run", c.into->dry_run, "Say how many and which would be changed, and change nothing");
+        c.app->add_flag("--dry-run", c.into->dry_run,
+                        "Print how many and which models would change, and change nothing");
         add_json(c);
     }
     void add_simulate() {
@@ -207,14 +210,14 @@ private:
             ->capture_default_str()
             ->check(between(0, 1e6));
         c.app->add_option("--record", c.into->record, "File for JSON lines: every entity's pose, velocities and state");
-        c.app->add_option("--rate", c.into->rate, "Samples a simulated second")
+        c.app->add_option("--rate", c.into->rate, "Samples per simulated second")
             ->capture_default_str()
             ->check(between(1e-3, 1e5));
         c.app->add_flag("--contacts", c.into->contacts, "Record contacts with impulses");
         c.app->add_flag("--energy", c.into->energy,
                         "Say at the end what changed the bodies' energy, and record energy and momenta");
         c.app->add_option("--trace", c.into->trace,
-                          "File for when each stage of each step began and ended on which thread, for chrome://tracing "
+                          "File for the times of each stage of each step on each thread, for chrome://tracing "
                           "or ui.perfetto.dev");
         add_json(c);
     }
@@ -227,12 +230,12 @@ private:
     }
     void add_classify() {
         auto c = add<ClassifyArguments>("classify",
-                                        "Say what a thing of this name is taken for, why, and what else it "
-                                        "could be",
+                                        "Print the category of a thing of this name, why, and what else it could be",
                                         "embody classify tureen --category Kitchen --size 0.3 0.25 0.2");
         add_taxonomy(c.app);
         c.app->add_option("name", c.into->name, "Name of a model")->required();
-        c.app->add_option("--tag", c.into->tags, "A tag of it; may be given again")->allow_extra_args(false);
+        c.app->add_option("--tag", c.into->tags, "A tag of the model; may be given several times")
+            ->allow_extra_args(false);
         c.app->add_option("--category", c.into->category, "The catalogue's own category");
         c.app->add_option("--folder", c.into->folder, "Folder of its file");
         c.app->add_option("--size", c.into->size, "Extents of its box, m")->expected(3)->check(between(1e-6, 1e6));
@@ -255,17 +258,16 @@ private:
                          "mesh_volume_m3")
             ->required()
             ->check(CLI::ExistingFile);
-        mass->add_option("--told", c.into->told,
-                         "What the predictor is told beside the size: everything, name, category")
+        mass->add_option("--told", c.into->told, "What the predictor knows beside the size: everything, name, category")
             ->capture_default_str()
             ->check(CLI::IsMember({"everything", "name", "category"}).description(""));
         mass->add_flag("--unseen", c.into->unseen,
                        "Hide the category of each object, as if its words were never seen: what WordNet makes of them");
-        mass->add_option("--worst", c.into->worst, "List so many of the worst predictions")
+        mass->add_option("--worst", c.into->worst, "Number of the worst predictions to list")
             ->capture_default_str()
             ->check(CLI::NonNegativeNumber);
         CLI::App* catalogue = c.app->add_subcommand(
-            "catalogue", "Models of the database that are understood, beside what their catalogue says");
+            "catalogue", "Categories of the database's models, compared with the data of their catalogue");
         c.into->database = catalog::Catalog::default_file();
         catalogue->add_option("--database", c.into->database, "Model database")->capture_default_str();
         catalogue
@@ -273,9 +275,9 @@ private:
                          "CSV with the columns words and kinds (parts separated by ;) to compare physical kinds with")
             ->check(CLI::ExistingFile);
         CLI::App* behaviour = c.app->add_subcommand(
-            "behaviour", "What models of the database do in small simulations beside what their attributes say");
+            "behaviour", "Behaviour of the database's models in small simulations, compared with their attributes");
         behaviour->add_option("--database", c.into->database, "Model database")->capture_default_str();
-        behaviour->add_option("--limit", c.into->limit, "At most so many models (0: all)")
+        behaviour->add_option("--limit", c.into->limit, "Maximum number of models (0: all)")
             ->capture_default_str()
             ->check(CLI::NonNegativeNumber);
         for (CLI::App* one : {mass, catalogue, behaviour}) {
@@ -298,11 +300,11 @@ private:
         c.app
             ->add_option(
                 "suite", c.into->suite,
-                "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
+                "table1; stability: do structures stand without gaps and motion; simbenchmark: accuracy beside "
                 "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
                 "models of the database; tetrahedra: fillings of soft ones; grains: slopes of heaps "
                 "and cost of grains; cloth: cost of a tablecloth; soft: cost of cushions; fluid: cost of "
-                "water with things afloat; convergence: soft things and liquids beside theory, finer and finer; "
+                "water with floating boxes; convergence: soft bodies and liquids beside theory at several resolutions; "
                 "catalogue: search in the database, filled with variants")
             ->capture_default_str()
             ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra",
@@ -310,13 +312,13 @@ private:
                         .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);
-        c.app->add_option("--bodies", c.into->bodies, "Most bodies of a scene of scaling")
+        c.app->add_option("--bodies", c.into->bodies, "Suite scaling: largest number of bodies")
             ->capture_default_str()
             ->check(CLI::Range(1'000, 1'000'000));
         c.app
             ->add_option(
                 "--models", c.into->models,
-                "Fill the database of catalogue with variants of its models up to this many; not the default one")
+                "Suite catalogue: fill the database (not the default one) with variants up to this many models")
             ->check(CLI::Range(0, 10'000'000));
         c.app->add_option("--steps", c.into->steps, "Steps of each scene of table1 (default: its own number)")
             ->check(CLI::Range(0, 10'000'000));

@@ -66,7 +66,7 @@ int run_bench(const BenchArguments& arguments) {
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});
     if (!arguments.json) {
-        print_text("Milliseconds a step at 60 Hz; the paper's on a Core 2 Quad Q9400 of 2009.\n");
+        print_text("Milliseconds per step at 60 Hz; the paper's on a Core 2 Quad Q9400 of 2009.\n");
         print_text("{} {:>6} {:>9} {:>9} {:>9}   {:>7} {:>7} {:>7}   {}\n", padded("scene", 15), "bodies", "max", "min",
                    "average", "paper:", "min", "average", "end state");
     }

@@ -11,7 +11,7 @@ namespace embody::cli {
 
 int run_cloth(const BenchArguments& arguments) {
     if (!arguments.json) {
-        print_text("Milliseconds a step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
+        print_text("Milliseconds per step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
         print_text("nodes   edges  workers  falling  at rest    worst  deformables   end state\n");
     }
     nlohmann::json rows = nlohmann::json::array();

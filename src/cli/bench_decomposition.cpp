@@ -100,7 +100,7 @@ int run_decomposition(const BenchArguments& arguments) {
                     {"mean_added_95_m", added_95 / n},
                     {"models_a_second", rate}});
     } else {
-        print_text("{} models: {:.1f} hulls, {:.1f} mm added, {:.1f} mm at 95 %, {:.1f} models a second\n", done,
+        print_text("{} models: {:.1f} hulls, {:.1f} mm added, {:.1f} mm at 95 %, {:.1f} models per second\n", done,
                    hulls / n, 1e3 * added / n, 1e3 * added_95 / n, rate);
     }
     return failed == 0 && done > 0 ? exit_ok : exit_failed;

@@ -24,7 +24,7 @@ int run_fluid(const BenchArguments& arguments) {
     bool right = true;
     if (!arguments.json) {
         print_text(
-            "Water that sloshes, 20 boxes afloat, 180 beside it; 3 s at 60 Hz, of each step the fastest of {} runs.\n",
+            "Sloshing water, 20 floating boxes, 180 beside it; 3 s at 60 Hz, of each step the fastest of {} runs.\n",
             runs);
         print_text("particles  workers  fluid ms  step ms  worst ms  volume %  draft %  end state\n");
     }

@@ -53,7 +53,7 @@ void print_row(const AccuracyTest& test, double time_step, const Accuracy& accur
 
 void print_head() {
     print_text(
-        "Errors of SimBenchmark's tests beside the least that was published of five engines; below 1 is better.\n");
+        "Errors of SimBenchmark's tests beside the smallest published one of five engines; below 1 is better.\n");
     print_text("{} {:>5} {:>12} {} {} {} {:>9}   {}\n", padded("test", 12), "dt ms", "error", padded("", 6),
                padded("best published", 16), padded("ratio", 9), "ms a step", "verdict");
 }

@@ -80,8 +80,8 @@ int run_tetrahedra(const BenchArguments& arguments) {
     if (!models) return report(models.error());
     if (!arguments.json) {
         print_text(
-            "Cells in mm, volume in % of the estimated, angles in degrees, least weight of a drawn vertex, processor "
-            "time in s.\n");
+            "Cells in mm, volume in % of the estimated, angles in degrees, smallest weight of a drawn vertex, "
+            "processor time in s.\n");
         print_text("{} {:>9} {:>6} {:>5} {:>6} {:>3} {:>3} {:>6} {:>6} {:>6} {:>6} {:>7} {:>7}  volume from\n",
                    padded("model", 24), "triangles", "tetra", "nodes", "cell", "in", "out", "volume", "least", "most",
                    "weight", "fill", "embed");

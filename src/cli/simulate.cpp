@@ -179,7 +179,7 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     if (reached(StepLimit::linear_speed_clamped)) print_line("note: a body was slowed to settings.max_linear_speed");
     if (reached(StepLimit::angular_speed_clamped)) print_line("note: a body was slowed to settings.max_angular_speed");
     if (reached(StepLimit::too_many_pairs))
-        print_line("note: so many bodies are in each other that some pairs are left out; place them apart");
+        print_line("note: so many bodies overlap that some pairs are left out; place them apart");
     if (reached(StepLimit::not_finite_body_frozen))
         print_line("note: a body's state left the finite numbers; it was switched off where it last was");
     if (reached(StepLimit::not_finite_deformable_frozen))
@@ -187,9 +187,9 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     if (reached(StepLimit::not_finite_fluid_frozen))
         print_line("note: a liquid's motion left the finite numbers; it was frozen where it was");
     if (reached(StepLimit::fluid_particles_lost))
-        print_line("note: liquid ran so far away that it was taken out; a floor or walls keep it");
+        print_line("note: liquid flowed so far away that it was removed; a floor or walls keep it");
     if (reached(StepLimit::impact_iterations_exhausted))
-        print_line("note: an impact needed more rounds than allowed; a smaller settings.time_step helps");
+        print_line("note: an impact needed more iterations than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))
         print_line("note: bodies overlapped deeply; place them apart or use a smaller settings.time_step");
     if (summary.paused) print_line("an action paused the scene before the time was over");

@@ -48,7 +48,7 @@ export function openHelp(parts: Pick<Parts, "preferences">, actions: readonly Us
       { class: "help-columns" },
       section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
       section("Soft things, cloth, ropes, liquids, grains", MATTER.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
-      section("Glimmer on things while there is a simulation", [
+      section("Tint of things while there is a simulation", [
         ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),
         element("p", { class: "note" }, "The view options colour things all over; T turns it off."),
       ]),

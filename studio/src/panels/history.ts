@@ -16,7 +16,7 @@ export function openHistory(parts: Pick<Parts, "server">, model: ModelSummary | 
   const list = element("ol", { class: "history", "data-testid": "history" });
   const none = element("p", { class: "note" }, model ? "Nobody has changed this model." : "Nobody has changed a model of the catalogue.");
   const more = element("button", { class: "text-button", onclick: () => void load(oldest) }, "Show older changes");
-  const intro = "Acts of everybody who uses this database, in the Studio or on the command line. An act is taken back as a whole; that too can be taken back.";
+  const intro = "Changes by everybody who uses this database, in the Studio or on the command line. A change is undone as a whole; an undo can be undone, too.";
   const dialog = openDialog(model ? `Changes of ${model.name}` : "Changes of the catalogue", "history-dialog", element("p", { class: "note" }, intro), none, list, more);
   let oldest = 0;
   let shown = PAGE;

@@ -17,7 +17,7 @@ export class PinFields {
   private readonly said = element("p", { class: "note", "data-testid": "pin-count" });
   private readonly holder = element("select", { "aria-label": "Held by", "data-testid": "pin-holder", onchange: () => this.holdBy() });
   private readonly clamped = element("input", { type: "checkbox", "aria-label": "Clamped", "data-testid": "pin-clamped", onchange: () => this.clamp() });
-  private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: "Holds the rope's direction and its turn about itself too" }, "Clamped"), this.clamped);
+  private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: "Holds the rope's direction and twist, too" }, "Clamped"), this.clamped);
   private index = 0;
   private mesh: SimulationMesh | null = null;
   /** The next click on the entity pins it there. */
@@ -30,7 +30,7 @@ export class PinFields {
       element("summary", {}, "Pins"),
       this.said,
       this.buttons,
-      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: "What the pinned places go with" }, "Held by"), this.holder),
+      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: "What the pins are attached to" }, "Held by"), this.holder),
       this.clampedRow,
     );
     this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": "Pins" }, group);
@@ -70,7 +70,7 @@ export class PinFields {
     const button = (text: string, title: string, name: string, run: () => void) => element("button", { title, "data-testid": `pin-${name}`, onclick: run }, text);
     this.buttons.replaceChildren(
       ...(mesh ? placesOf(mesh).map((place) => button(PLACE_LABELS[place], "Pin it there", place, () => this.add((entity) => pinsAt(place, mesh, entity)))) : []),
-      button("A place…", "Then click on the thing where it shall be held", "pick", () => this.pick(!this.picking)),
+      button("A place…", "Then click on the point of the thing to pin", "pick", () => this.pick(!this.picking)),
       button("Remove all", "Nothing holds it any more", "none", () => this.put([])),
     );
   }
@@ -82,7 +82,7 @@ export class PinFields {
     parts.view.pins.show(this.index, mesh && pins.length > 0 ? heldNodes(pins, mesh.nodes) : []);
     parts.view.invalidate();
     if (!this.index) return;
-    setText(this.said, this.picking ? "Click on it where it shall be held; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
+    setText(this.said, this.picking ? "Click on the point to pin; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
     const holders = [...parts.document.entities.values()].filter(({ index }) => index !== this.index && !parts.entities.clouds.of(index));
     this.holder.replaceChildren(
       element("option", { value: WORLD }, "the world"),
@@ -136,7 +136,7 @@ export class PinFields {
     const places = this.parts.entities.softs.placesOf(this.index);
     const hit = this.parts.view.pick(event.clientX, event.clientY);
     if (!places || hit?.index !== this.index) {
-      setText(this.said, "That is not it: click on the thing itself, or press Escape.");
+      setText(this.said, "Click on the selected thing itself, or press Escape.");
       return;
     }
     const node = nearestNode(places, hit.point);

@@ -33,7 +33,7 @@ export class SceneFields {
         row("Title", this.title.root, "What the scene is called"),
         row("Gravity", this.gravity.root, "Acceleration of free fall"),
         row("Time step", this.timeStep.root, "Simulated time of one step"),
-        row("Substeps", this.substeps.root, "Parts a step is solved in: more are stiffer and slower"),
+        row("Substeps", this.substeps.root, "Substeps of a step: more are stiffer and slower"),
         row("Sleeping", this.sleeping.root, "Bodies at rest cost nothing until they are touched"),
       ),
       element(
