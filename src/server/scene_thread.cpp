@@ -259,13 +259,13 @@ bool SceneThread::State::tell_progress(std::size_t done, std::size_t total) {
     return !stop_is_asked();
 }
 
-// The server ends.
+// Whether the server ends.
 bool SceneThread::State::stop_is_requested() const {
     const std::lock_guard lock(mutex);
     return stop;
 }
 
-// The server ends, or the client's next command asks to stop.
+// Whether the server ends, or the client's next command asks to stop.
 bool SceneThread::State::stop_is_asked() {
     const std::lock_guard lock(mutex);
     return stop || std::any_of(messages.begin(), messages.end(), [this](const Message& message) {

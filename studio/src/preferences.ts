@@ -70,7 +70,7 @@ export class Preferences {
     try {
       localStorage.setItem(PLACE, JSON.stringify(this.values));
     } catch {
-      // Where the browser stores nothing, preferences are lost; the user has set it so.
+      // Where the user lets the browser store nothing, preferences are lost with the page.
     }
     this.changed.emit(name);
   }

@@ -172,13 +172,13 @@ TEST_F(CatalogChangesTest, ABatchIsTakenBackByItsNumberAndThatTooCanBeTakenBack)
     EXPECT_EQ(entry(key(0), "mass").at("overridden"), false);
     EXPECT_EQ(run("edit.undo").at("undone"), nullptr);
 
-    // The change is the last action, so undo takes it back; redo applies it again.
+    // An undo by the batch's number is an undo of the last action, too: redo applies it again.
     change({{"keys", {key(1)}}}, "mass", 5);
     const json last = run("catalog.history", {{"limit", 1}}).at("batches")[0].at("batch");
     run("catalog.undo", {{"batch", last}});
     EXPECT_EQ(run("edit.redo").at("redone"), "Set Mass of oak chair 1");
     EXPECT_EQ(value(key(1), "mass"), 5);
-    // The same for the undo of that change, which redo would repeat next.
+    // The undo of that undo is the redo that would come next.
     run("edit.undo");
     const json undo = run("catalog.history", {{"limit", 1}}).at("batches")[0];
     EXPECT_EQ(undo.at("command"), "undo");

@@ -136,7 +136,7 @@ export class Batch {
 }
 
 /**
- * Of folds behind each other only the nearest is drawn, half transparent: the cloth first fills the depth buffer alone.
+ * Of folds behind each other only the nearest is blended with what is behind the cloth: the cloth first fills the depth buffer alone.
  * Otherwise the order of the triangles would decide which of them hide each other.
  */
 function drawNearestOnly(mesh: InstancedMesh<BufferGeometry, Material | Material[]>, material: Material): void {

@@ -240,7 +240,7 @@ export class EntityView {
       // The entity may have changed while the mesh was being loaded.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
         this.join(entity, key, () => skin.drawable);
-        // Before the first frame is drawn with the present nodes, not with those at rest.
+        // Sets the present pose at once, so that the entity is never drawn with its nodes at rest.
         this.place(index, performance.now());
         this.pointed.emit(index);
       } else if (skin) {

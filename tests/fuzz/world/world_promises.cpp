@@ -12,7 +12,7 @@
 
 namespace embody::physics {
 
-// World::state is private. An explicit instantiation may name private members, and passes this one on by a friend.
+// World::state_ is private. An explicit instantiation may name private members, and passes this one on by a friend.
 const state::WorldState& state_of(const World& world);
 template <std::unique_ptr<state::WorldState> World::*member>
 struct OpenedWorld {
