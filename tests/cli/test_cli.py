@@ -81,7 +81,7 @@ class Terminal(unittest.TestCase):
             self.assertFalse(line.startswith("\u009b"), line)
         return None
 
-    def test_names_of_models_are_written_out(self):
+    def test_control_characters_in_names_of_models_are_escaped(self):
         folder = self.path / NASTY
         folder.mkdir()
         (folder / f"{NASTY}.obj").write_text(TETRAHEDRON)
@@ -121,7 +121,7 @@ class Terminal(unittest.TestCase):
         self.assert_plain(run("--no\x1b[31m"))
         self.assert_plain(run("check", "--no\x1b[31m", str(scene)))
 
-    def test_bytes_that_are_no_utf8_are_written_out(self):
+    def test_bytes_that_are_no_utf8_are_escaped(self):
         name = os.fsencode(self.path) + b"/caf\xe9.json"
         pathlib.Path(os.fsdecode(name)).write_text("{}")
         result = subprocess.run([EMBODY, "check", "--database", self.database, name], capture_output=True, timeout=60)
@@ -150,7 +150,7 @@ class Terminal(unittest.TestCase):
         with open("/dev/full", "w") as full:
             self.assertEqual(subprocess.run([EMBODY, "show", *database, "none"], stderr=full, timeout=60).returncode, 1)
 
-    def test_a_reader_that_leaves_is_no_news(self):
+    def test_a_reader_that_closes_the_pipe_is_no_error(self):
         for restore in (True, False):
             process = subprocess.Popen([EMBODY, "scene", "table1_g"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        restore_signals=restore)
@@ -180,7 +180,7 @@ class Classify(unittest.TestCase):
         self.assertIn("mouse.n.01", result.stdout)
         self.assertIn("or ", result.stdout)
 
-    def test_a_missing_taxonomy_is_said(self):
+    def test_a_missing_taxonomy_is_reported(self):
         result = run("classify", "chair", EMBODY_DATA="/nowhere")
         self.assertEqual(result.returncode, 1)
         self.assertIn("/nowhere", result.stderr)
@@ -244,7 +244,7 @@ class Database(unittest.TestCase):
         self.assertIn("notes.txt", result.stderr)
         self.assertIn("dear to me", alien.read_text())
 
-    def test_a_material_is_known_and_contradictions_are_told(self):
+    def test_a_material_is_known_and_contradictions_are_reported(self):
         run("import", "--database", self.database, str(self.path / "models"))
         model = json.loads(run("search", "--database", self.database, "--json", "chair").stdout)["models"][0]
         one = ("--database", self.database, str(model["id"]))
@@ -434,7 +434,7 @@ class Scenes(unittest.TestCase):
         self.assertEqual(simulated.returncode, 1)
         self.assertIn("colour", simulated.stderr)
 
-    def test_what_is_not_simulated_as_its_kind_says_is_told(self):
+    def test_entities_not_simulated_as_their_kind_says_are_reported(self):
         ball = {"name": "Ball", "shape": {"type": "sphere", "radius": 0.2}, "attributes": {"kind": "cloth"}}
         scene = self.path / "balls.json"
         scene.write_text(json.dumps({"embody_scene": 1, "entities": [{**ball, "index": 1},
@@ -484,7 +484,7 @@ class Scenes(unittest.TestCase):
         self.assertIn("unexplained:", told.stdout)
         self.assertNotIn("energy_account", run("simulate", str(file), "--seconds", "0.1", "--json").stdout)
 
-    def test_a_recording_that_cannot_be_written_is_said(self):
+    def test_a_recording_that_cannot_be_written_is_reported(self):
         listed = json.loads(run("scene", "--json").stdout)
         result = run("simulate", listed["scenes"][0]["name"], "--seconds", "0.1", "--record", "/nowhere/out.jsonl")
         self.assertEqual(result.returncode, 1)
@@ -536,7 +536,7 @@ class Scenes(unittest.TestCase):
             self.assertEqual(result.returncode, 1, file)
             self.assertIn(file, result.stderr)
 
-    def test_numbers_that_are_none_are_refused(self):
+    def test_non_finite_numbers_are_refused(self):
         for option, value in (("--seconds", "nan"), ("--seconds", "-1"), ("--seconds", "inf"), ("--rate", "nan")):
             result = run("simulate", "table1_e", option, value)
             self.assertEqual(result.returncode, 2, (option, value, result.stderr))
@@ -570,7 +570,7 @@ class Scenes(unittest.TestCase):
         self.assertLessEqual(row["min_ms"], row["average_ms"])
         self.assertLessEqual(row["average_ms"], row["max_ms"])
 
-    def test_bench_stability_tells_how_a_structure_stands(self):
+    def test_bench_stability_reports_how_a_structure_stands(self):
         result = run("bench", "stability", "--scene", "card_pair", "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
         row = json.loads(result.stdout)["scenes"][0]

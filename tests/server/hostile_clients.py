@@ -228,7 +228,7 @@ def test_idle_connections_keep_nobody_out(embody: str, wrong: list):
             connection.close()
 
 
-def test_too_many_viewers_are_told_so(embody: str, wrong: list):
+def test_too_many_viewers_are_refused_with_a_reason(embody: str, wrong: list):
     with Stage(embody) as stage:
         viewers, refused = [], None
         for _ in range(600):

@@ -46,13 +46,13 @@ class WhenCMakeIsCalled(unittest.TestCase):
         self.assertEqual(self.configure(), ["OFF"])
         self.assertEqual(self.configure(), [])
 
-    def test_test_puts_them_in_and_run_leaves_them_in(self):
+    def test_test_adds_the_tests_and_run_keeps_them(self):
         self.configure()
         self.assertEqual(self.configure("with-tests"), ["ON"])
         self.assertEqual(self.configure("with-tests"), [])
         self.assertEqual(self.configure(), [])
 
-    def test_run_works_after_tests_could_not_be_put_in(self):
+    def test_run_works_after_tests_could_not_be_added(self):
         self.configure()
         self.configure("with-tests", fail=True)
         self.assertEqual(self.configure(), ["OFF"])

@@ -67,7 +67,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await input.press("Tab");
   }
 
-  it("shows of a model's values unit, interval, source, level and reset, as of an entity's", async () => {
+  it("shows unit, interval, source, level and reset of a model's values, as of an entity's", async () => {
     await pick();
     const shown = async () => {
       const text = await row("mass").innerText();
@@ -105,7 +105,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     assert.equal(await field("mass").inputValue(), before);
   });
 
-  it("gives a value to all that are found, tells the other Studio, and undoes and redoes it with keys and button", async () => {
+  it("sets a value of all models that are found, updates the other Studio, and undoes and redoes it with keys and button", async () => {
     const other = await openStudio(session.browser, session.address);
     others.push(other);
     await other.getByTestId("search").fill("chair");
@@ -211,7 +211,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await toast(/^Took back Wall thickness/).waitFor();
   });
 
-  it("gives the model's own value of an entity that is scaled", async () => {
+  it("offers the value without the scale of a scaled entity", async () => {
     const key = await pick();
     const mass = (await value(key, "mass")).value;
     await page.getByTestId("model-add").click();
@@ -312,7 +312,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await row("mass").getByText("manual").waitFor({ state: "detached" });
   });
 
-  it("lists a model elsewhere once its category is another", async () => {
+  it("lists a model under its new category once that has changed", async () => {
     const before = await shownCount();
     await page.getByTestId("category").selectOption("chair");
     await page.waitForFunction((count) => Number(document.querySelector("[data-testid=result-count]").textContent.replace(/\D/g, "")) < count, before);

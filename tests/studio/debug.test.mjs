@@ -38,7 +38,7 @@ describe("debug drawing in the Studio", { timeout: 300000 }, () => {
     await page.keyboard.press("Escape");
   }
 
-  it("shows contacts and shapes where they are ticked, and nothing where they are not", async () => {
+  it("draws contacts and shapes while their boxes are ticked", async () => {
     await session.command("simulation.step", { count: 3 });
     assert.deepEqual(await counts(), {});
     const plain = await pictureOfScene(page);
@@ -58,7 +58,7 @@ describe("debug drawing in the Studio", { timeout: 300000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
-  it("tells how much a frame had no room for, as long as it has none", async () => {
+  it("shows how much did not fit into a frame, as long as that is so", async () => {
     // 180 × 180 samples have 96,839 edges; a frame has 60,000 lines.
     const size = 180;
     const heights = Array.from({ length: size * size }, (_, i) => 0.1 * ((i * 7919) % 11));

@@ -53,7 +53,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
-  it("is chosen by a click on its surface, and says how fine it is and why", async () => {
+  it("is selected by a click on its surface, and shows its resolution and the reason", async () => {
     const seen = await page.evaluate((water) => window.embody.seenAt(water), WATER);
     await page.mouse.click(seen.x, seen.y);
     assert.deepEqual(await page.evaluate(() => window.embody.selection()), [WATER]);
@@ -63,7 +63,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
-  it("is drawn as it is after it was selected and let go", async () => {
+  it("is drawn as before after it was selected and deselected", async () => {
     const seen = await page.evaluate((index) => window.embody.seenAt(index), WATER);
     await page.mouse.click(seen.x, seen.y);
     await page.waitForFunction((index) => window.embody.selection()[0] === index, WATER);

@@ -62,7 +62,7 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
-  it("is chosen as one thing by a click on a grain, and told apart by its outline", async () => {
+  it("is selected as one entity by a click on a grain, and marked by its outline", async () => {
     await command("simulation.step", { count: 200 });
     await page.waitForFunction((sand) => window.embody.points(sand).upper[0] > 0.12, SAND);
     const seen = await page.evaluate((sand) => window.embody.seenAt(sand), SAND);

@@ -193,7 +193,7 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await page.waitForFunction(() => window.embody.collisionParts() === 0);
   });
 
-  it("says how far long work is, and lets only who began it stop it", async () => {
+  it("shows the progress of a long command, and lets only its own page stop it", async () => {
     const work = page.getByTestId("stat-work");
     mock.broadcast({ event: "progress", client: 7, done: 1200, total: 60000 });
     await work.getByText("Changing models: 1,200 of 60,000").waitFor();

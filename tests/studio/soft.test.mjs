@@ -37,7 +37,7 @@ describe("soft things in the Studio", { timeout: 600000 }, () => {
   const send = (name, params) => session.command(name, params);
   const bent = (index) => page.evaluate((index) => window.embody.bent(index), index);
 
-  it("draws them at rest exactly as they are", async () => {
+  it("draws soft things at rest exactly in their form", async () => {
     // Quantised nodes are a few micrometres off; vertices outside of the tetrahedra are carried, too.
     const { size, vertices } = await bent(2);
     [0.4, 0.2, 0.4].forEach((extent, axis) => assert.ok(Math.abs(size[axis] - extent) < 1e-3, `${size}`));

@@ -119,7 +119,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => Math.abs((window.embody.bent(3)?.size[1] ?? 0) - 1.23) < 0.05 && window.embody.bent(3).normals > 0.99);
   });
 
-  it("begins with fast drawing where there is no graphics card, and what stands still is drawn finely", async () => {
+  it("starts with fast drawing without a graphics card, and draws a still scene finely", async () => {
     // A page without a choice of quality.
     const other = await openStudio(session.browser, session.address, { quality: "" });
     const software = await other.evaluate(() => {
@@ -142,7 +142,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => window.embody.simulation().state === "stopped");
   });
 
-  it("is drawn as it is after it was selected and let go", async () => {
+  it("is drawn as before after it was selected and deselected", async () => {
     await send("simulation.step", { count: 1 });
     await page.waitForFunction(() => window.embody.simulation().step === 1);
     const seen = await page.evaluate((index) => window.embody.seenAt(index), 2);
