@@ -492,7 +492,7 @@ TEST(Bowls, MarblesThatHitEachOtherGainNothingAndLoseNoneByThat) {
         for (const double mu : {0.0, 0.5}) {
             const Outcome outcome = swing_together(hollow, count, restitution, mu, 1, 60);
             EXPECT_LT(outcome.most, 1 + 1e-6) << count << " in a " << kind << " mu " << mu;
-            // What rolls slips after a collision, and rubs.
+            // A rolling ball slips after a collision: friction acts on it.
             if (restitution < 1 || mu > 0) continue;
             EXPECT_GT(outcome.least, 1 - bar) << count << " in a " << kind;
         }

@@ -182,8 +182,8 @@ TEST(RandomAccounts, ScenesOnTheGroundAreExplained) {
     }
 }
 
-/// Joints take no part in an impact and are mended in the substep after it: what acts at once there has only one sum,
-/// and turns bodies farther than its mean tells. Without impacts chains are explained.
+/// Joints take no part in an impact and are corrected in the substep after it: what acts at once there has only one
+/// sum, and turns bodies farther than its mean tells. Without impacts chains are explained.
 void check_chains(const char* family, bool has_floor, int scenes) {
     for (int seed = 1; seed <= scenes; ++seed) {
         const auto world = random_chain(static_cast<std::uint64_t>(seed), has_floor);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A floor rubs the liquid that slides over it, wherever it lies between the cells.
+// A floor brakes the liquid that slides over it, wherever it lies between the cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
