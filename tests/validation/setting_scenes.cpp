@@ -6,23 +6,12 @@
 #include <cmath>
 
 #include "physics/definitions/deformable_primitives.h"
+#include "validation/constraint_scenes.h"
 #include "validation/fluid_scenes.h"
-#include "validation/reference.h"
+#include "validation/setting_scene_parts.h"
 
 namespace embody::physics {
 namespace {
-
-GoldenScene on_plane(const WorldSettings& settings = {}, const Material& material = {}) {
-    GoldenScene scene{make_world(settings)};
-    add_plane(*scene.world, material);
-    return scene;
-}
-
-BodyHandle add_ball(World& world, double radius, const BodyDefinition& like) {
-    BodyDefinition ball = like;
-    ball.shape = world.create_shape(SphereShape{radius}).value();
-    return world.create_body(ball).value();
-}
 
 // Sleepers that gusts push, a plate that passes close over one, one that is taken away beside another.
 void take_one_away(World& world, int step) {
@@ -144,12 +133,6 @@ GoldenScene rolling() {
     }
     add(ConeShape{0.3, 0.3}, {.position = {3, 0.4, -4}, .rotation = on_side, .angular_velocity = {2, 3, 0}});
     return scene;
-}
-
-JointHandle join(World& world, BodyHandle a, BodyHandle b, Vec3 on_a, Vec3 on_b) {
-    return world
-        .create_joint({.joint = BallJoint{}, .body_a = a, .body_b = b, .frame_a = {on_a, {}}, .frame_b = {on_b, {}}})
-        .value();
 }
 
 // A net of ball joints, too large for one factorisation, that boxes fall on; some of its joints begin a little open.
@@ -423,6 +406,12 @@ constexpr SettingScene scenes[] = {
     {"optimization", "sunk_wall", sunk_wall, 60},
     {"optimization", "towers", towers},
     {"constraint", "rolling", rolling, 180},
+    {"constraint", "rolling_bodies", rolling_bodies, 60},
+    {"constraint", "balls_in_bowls", balls_in_bowls},
+    {"constraint", "small_pyramids", small_pyramids, 30},
+    {"constraint", "long_chain", long_chain, 20},
+    {"constraint", "loaded_chain", loaded_chain, 140},
+    {"constraint", "many_bounces", many_bounces, 5},
     {"constraint", "net", net, 20},
     {"constraint", "falling_chains", falling_chains, 40},
     {"constraint", "elastic_balls", elastic_balls},

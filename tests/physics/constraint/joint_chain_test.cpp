@@ -2,6 +2,8 @@
 // Chains whose passes come to no end in a substep must not swing up from one to the next.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "make_world.h"
 #include "physics/inter/world.h"
 
@@ -42,6 +44,26 @@ TEST(JointChain, KeepsItsEnergyOrLosesIt) {
         EXPECT_LE(greatest_energy_gain(HingeJoint{.limit = JointLimit{-0.4, 0.5}}, count), 1.01) << count;
         EXPECT_LE(greatest_energy_gain(SliderJoint{.limit = JointLimit{-0.2, 0.2}}, count), 1.01) << count;
     }
+}
+
+// What rounding stirs in a chain of more links than are solved at once must not grow from one substep to the next.
+TEST(JointChain, TooLongForOneSolveStaysWhereItIs) {
+    const auto world = make_world({.gravity = {}});
+    const auto ball = world->create_shape(SphereShape{0.05}).value();
+    const Vec3 end{0.1, 0, 0};
+    BodyHandle last;
+    double mass = 0;
+    for (int i = 0; i < 260; ++i) {
+        const auto link = world->create_body({.shape = ball, .position = end * (2 * i), .allow_sleep = false}).value();
+        mass += world->mass(link);
+        if (i > 0) {
+            ASSERT_TRUE(world->create_joint(
+                {.joint = BallJoint{}, .body_a = last, .body_b = link, .frame_a = {end, {}}, .frame_b = {-end, {}}}));
+        }
+        last = link;
+    }
+    for (int i = 0; i < 60; ++i) world->step();
+    EXPECT_LT(std::sqrt(2 * world->conserved().kinetic_energy / mass), 5e-3);
 }
 
 }  // namespace

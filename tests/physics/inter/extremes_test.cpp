@@ -67,6 +67,16 @@ TEST(Extremes, TooFastMotionIsSlowedAndReported) {
     EXPECT_NEAR(length(floor.world->angular_velocity(body)), 2e4, 1);
 }
 
+// 4 cm are what a fast fall may leave for a moment, 6 cm are not.
+TEST(Extremes, DeepOverlapsAreReported) {
+    for (const double depth : {0.04, 0.06}) {
+        Floor floor;
+        const auto box = floor.world->create_shape(BoxShape{{0.5, 0.5, 0.5}}).value();
+        ASSERT_TRUE(floor.world->create_body({.shape = box, .position = {0, 0.5 - depth, 0}}));
+        EXPECT_EQ(has(floor.run(1), StepLimit::deep_penetration), depth > 0.05) << depth;
+    }
+}
+
 TEST(Extremes, ThousandsOfBodiesInOnePointAreSteppedAndReported) {
     Floor floor;
     const auto ball = floor.world->create_shape(SphereShape{0.3}).value();

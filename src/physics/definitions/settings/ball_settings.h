@@ -16,18 +16,20 @@ struct BallPathSettings {
     double part_travel_fraction = 0.5;
     /// Maximum number of parts of a step; the contact solver takes what needs more. Test: Settings.AreNoticed.
     int max_parts = 256;
-    /// Maximum number of times that a part is halved where the ground is not found. Open: no test reaches it.
+    /// Maximum number of times that a part is halved where the ground is not found. Test:
+    /// Settings.AreNoticed.
     int max_halvings = 6;
-    /// Maximum number of planes of the ground that the ball is put onto in turn. Open: no test reaches it.
+    /// Maximum number of planes of the ground that the ball is put onto in turn. Test: Settings.AreNoticed.
     int settle_iterations = 8;
-    /// Speed below which a ball comes to rest, with a step of gravity added, m/s. Open: no test reaches it.
+    /// Speed below which a ball comes to rest, with a step of gravity added, m/s. Test:
+    /// Settings.AreNoticed.
     double slow_speed = 2e-3;
     /// The same speed on ground that resists rolling, m/s. Test: Settings.AreNoticed.
     double slow_resisted_speed = 0.05;
     /// Depth from which on the ball's energy pays for lifting it out, m; up to that depth the contact solver carries
     /// it. Test: Settings.AreNoticed.
     double min_sag = 1e-5;
-    /// Depth, in radii, beyond which the contact solver takes the ball out. Open: no test reaches it.
+    /// Depth, in radii, beyond which the contact solver takes the ball out. Test: Settings.AreNoticed.
     double max_depth_fraction = 0.1;
     /// Separating speed over the speed along the ground, besides max_parting_speed, above which a ball that does not
     /// bounce leaves the ground. Test: Settings.AreNoticed.

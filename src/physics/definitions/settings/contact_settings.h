@@ -17,7 +17,7 @@ struct ContactSettings {
     /// slides. Test: Settings.AreNoticed.
     double match_feature_ratio = 5;
     /// Depth from which on a step reports that bodies overlap deeply, m; it steers nothing else. Source: what
-    /// max_correction_speed takes out in a step of 1/60 s.
+    /// max_correction_speed takes out in a step of 1/60 s. Test: Extremes.DeepOverlapsAreReported.
     float deep_penetration = 0.05F;
     /// Depth beyond the sag of a loaded soft contact that is not corrected, m. Source: less than the 0.005 of Box2D 2.4
     /// (b2_linearSlop) and the 0.02 of Jolt (mPenetrationSlop); here contacts are kept whatever their depth. Test:

@@ -33,7 +33,7 @@ struct DirectSettings {
     /// Settings.AreNoticed.
     std::size_t max_products_slow = 16000;
     /// Cost of all such iterations of a step after which no other is begun. Source: 3 to 7 ms by the measurements of
-    /// docs/physics/direct-solver.md. Open: no test reaches it.
+    /// docs/physics/direct-solver.md. Test: Settings.AreNoticed.
     std::size_t max_products_step = 60000;
     /// Stiffness k of the augmented Lagrangian over the heaviest mass. Source: one solve without a guess is then right
     /// to the inverse of this ratio, and doubles hold it up to ratios of masses of 1e6. Test: Settings.AreNoticed.

@@ -21,28 +21,29 @@ struct ImpactBudgetSettings {
     /// Maximum number of bounces against piles in a step, of all bodies together: the collapse of a large pile of
     /// bouncing bodies has no end. Test: Settings.AreNoticed.
     std::size_t pile_bounces = 500;
-    /// Number of awake bodies for which one more bounce against piles is allowed. Open: no test reaches it.
+    /// Number of awake bodies for which one more bounce against piles is allowed. Test:
+    /// ImpactBudget.OfPilesGrowsWithTheAwakeBodies.
     std::size_t bodies_per_pile_bounce = 8;
     /// Number of bodies and joints of jointed assemblies that cost as much as a bounce against a pile. Test:
     /// JointedImpact.ManyBlowsOnOneAssemblyReachALimitAndGainNothing.
     std::size_t nodes_per_bounce = 32;
     /// Predicted impacts that may be handled in a step, however few the contacts. Open: no test reaches it.
     std::size_t base_events = 64;
-    /// Further predicted impacts for each contact. Open: no test reaches it.
+    /// Further predicted impacts for each contact. Test: Settings.AreNoticed.
     std::size_t events_per_contact = 32;
     /// Number of sites of one collision beyond which no other contact is added; further contacts have events of their
     /// own. Test: Settings.AreNoticed.
     std::size_t max_simultaneous_sites = 64;
     /// Fraction of a step within which impacts are simultaneous. Source: rounding leaves 1e-12 between mirror images.
-    /// Open: no test reaches it.
+    /// Test: Settings.AreNoticed.
     double simultaneous_fraction = 1e-6;
     /// Fraction of a step within which impacts on a pile may change their order. Test: Settings.AreNoticed.
     double pile_order_fraction = 0.02;
     /// Maximum number of jointed bodies that an impact acts on in the same instant; the substeps pass it on to farther
-    /// ones. Open: no test reaches it.
+    /// ones. Test: Settings.AreNoticed.
     std::size_t max_jointed_bodies = 64;
     /// Number of jointed bodies up to which an assembly is moved to the moment of its impact as the substeps will move
-    /// it. Open: no test reaches it.
+    /// it. Test: Settings.AreNoticed.
     std::size_t max_flown_bodies = 8;
 };
 

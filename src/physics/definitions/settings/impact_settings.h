@@ -45,7 +45,7 @@ struct ImpactSettings {
     /// Source: half of the energy comes back, 0.7² = 0.49. Test: Settings.AreNoticed.
     double elastic_restitution = 0.7;
     /// Relative change of a joint's effect since the last step that is allowed for where contacts are left open for it.
-    /// Open: no test reaches it.
+    /// Test: Settings.AreNoticed.
     double held_acceleration_tolerance = 0.1;
     ImpactBudgetSettings budget;
     ImpactSolverSettings solver;

@@ -41,7 +41,7 @@ struct ImpactSolverSettings {
     double rough_approach_tolerance = 1e-2;
     /// Number of sites above which they count as many. Test: Settings.AreNoticed.
     std::size_t rough_sites = 8;
-    /// Maximum compressions of one collision, however few its sites. Open: no test reaches it.
+    /// Maximum compressions of one collision, however few its sites. Test: Settings.AreNoticed.
     std::size_t base_iterations = 64;
     /// Further compressions for each site. Test: Settings.AreNoticed.
     std::size_t iterations_per_site = 64;

@@ -10,14 +10,15 @@ namespace embody::physics {
 
 /// Bodies of revolution that roll on something flat (src/physics/constraint/rolling/rolling_body.cpp).
 struct RollingBodySettings {
-    /// Maximum gap of the higher end of a line that touches along its length, m. Open: no test reaches it.
+    /// Maximum gap of the higher end of a line that touches along its length, m. Test: Settings.AreNoticed.
     double side_gap = 5e-5;
     /// Maximum slip that is stopped at the start of a step, over the speed of the farthest point by turning. Test:
     /// Settings.AreNoticed.
     double max_slip_fraction = 0.05;
     /// Maximum slip that is stopped besides, m/s. Test: Settings.AreNoticed.
     double max_slip_speed = 0.01;
-    /// Sine of the angle between axis and normal below which the rim lies flat on the ground. Open: no test reaches it.
+    /// Sine of the angle between axis and normal below which the rim lies flat on the ground. Test:
+    /// Settings.AreNoticed.
     double min_lean = 0.005;
     /// Turn of the axis in a step below which the contact solver loses no energy, rad. Test: Settings.AreNoticed.
     double min_axis_turn = 1e-3;
@@ -33,7 +34,7 @@ struct RollingBodySettings {
     /// Settings.AreNoticed.
     double max_energy_error = 1e-3;
     /// Maximum number of contacts of a rolling body: a body that rolls on still faces has two rims on two neighbouring
-    /// triangles. Open: no test reaches it.
+    /// triangles. Test: Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
     std::uint32_t max_contacts = 8;
 };
 
@@ -56,7 +57,8 @@ static_assert(setting_count<RollingBodySettings> == member_count<RollingBodySett
 struct RollingSettings {
     /// Gap beyond which a ball or a ring does not touch the ground, m. Test: Settings.AreNoticed.
     double touch_gap = 2e-4;
-    /// Speed towards the ground above which a body that did not touch it has an impact, m/s. Open: no test reaches it.
+    /// Speed towards the ground above which a body that did not touch it has an impact, m/s. Test:
+    /// Settings.AreNoticed.
     double max_approach_speed = 0.05;
     /// Separating speed above which a ball leaves the ground, m/s. Test: Settings.AreNoticed.
     double max_parting_speed = 1e-3;
