@@ -24,9 +24,6 @@ constexpr const char* groups[] = {"collision", "constraint", "deformable", "flui
 /// Caps and special cases that these scenes do not reach ("Open:" in their comments). Whoever finds a scene that
 /// notices one takes it from here.
 constexpr std::string_view not_reached[] = {
-    "constraint.impact.budget.base_events",
-    "constraint.impact.rough_refine_gap_ratio",
-    "constraint.rolling.ball.settle_margin_fraction",
     "deformable.cloth.joining_iterations",
     "deformable.cloth.max_parts",
     "deformable.rope.move_tolerance_together",

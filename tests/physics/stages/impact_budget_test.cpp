@@ -15,6 +15,26 @@ bool is_exhausted(const StepReport& report) {
     return (report.limits & static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted)) != 0;
 }
 
+// Between two plates a ball bounces on each of them as often as a contact may, and is stopped.
+TEST(ImpactBudget, LetsEachContactHaveAllItsBounces) {
+    const auto world = make_world({.gravity = {}, .air_density = 0});
+    const double gap = 0.01, speed = 30;
+    const auto plate = world->create_shape(BoxShape{{0.1, 0.5, 0.5}}).value();
+    for (const double side : {-1, 1}) {
+        ASSERT_TRUE(world->create_body({.kind = BodyKind::static_body,
+                                        .shape = plate,
+                                        .position = {side * (0.1 + radius + gap), 0, 0},
+                                        .material = elastic}));
+    }
+    const auto ball = world
+                          ->create_body({.shape = world->create_shape(SphereShape{radius}).value(),
+                                         .linear_velocity = {speed, 0, 0},
+                                         .material = elastic})
+                          .value();
+    EXPECT_FALSE(is_exhausted(world->step()));
+    EXPECT_NEAR(length(world->linear_velocity(ball)), 0, 1e-6);
+}
+
 // Many balls fall at once on others that lie on the floor: each bounces against a pile.
 bool runs_out(std::size_t bodies_per_pile_bounce) {
     WorldSettings settings;

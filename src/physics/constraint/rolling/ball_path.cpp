@@ -227,8 +227,7 @@ bool BallPath::advance(BallPlace& at, double time, int halvings) {
     const double friction_work = move_along_plane(at, next, std::max(0.0, pressing), time);
     const Vec3 last_normal = at.touch.normal;
     const double moved = length(next.center - at.center);
-    if (!settle(next, &last_normal, smooth_edge_angle * moved + settings_.settle_margin_fraction * radius_))
-        return in_halves();
+    if (!settle(next, &last_normal, smooth_edge_angle * moved + beside_gap * radius_)) return in_halves();
 
     // Sets the speed by the energy that is left.
     const std::optional<double> lost = turn_or_hit(next, last_normal, time);

@@ -36,9 +36,6 @@ struct BallPathSettings {
     double max_parting_fraction = 0.02;
     /// Slip over the speed up to which a ball rolls at the start of a step. Test: Settings.AreNoticed.
     double roll_slip_fraction = 1e-3;
-    /// Gap, in radii, up to which ground is looked for after a part, besides the gap that smooth edges make. Open: no
-    /// test reaches it.
-    double settle_margin_fraction = 1e-3;
     /// Minimum of 1 + κ r, the width of a hollow over the ball's: a hollow that is narrower counts as this wide. Test:
     /// Settings.AreNoticed.
     double min_hollow_fraction = 0.2;
@@ -57,7 +54,6 @@ inline constexpr auto settings_of<BallPathSettings> = std::tuple{
     Setting{"max_depth_fraction", &BallPathSettings::max_depth_fraction, 1e-6, 1},
     Setting{"max_parting_fraction", &BallPathSettings::max_parting_fraction, 0, 1},
     Setting{"roll_slip_fraction", &BallPathSettings::roll_slip_fraction, 0, 1},
-    Setting{"settle_margin_fraction", &BallPathSettings::settle_margin_fraction, 0, 1},
     Setting{"min_hollow_fraction", &BallPathSettings::min_hollow_fraction, 1e-3, 1},
 };
 static_assert(setting_count<BallPathSettings> == member_count<BallPathSettings>(), "a setting is in no list");

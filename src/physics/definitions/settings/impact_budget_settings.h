@@ -27,9 +27,8 @@ struct ImpactBudgetSettings {
     /// Number of bodies and joints of jointed assemblies that cost as much as a bounce against a pile. Test:
     /// JointedImpact.ManyBlowsOnOneAssemblyReachALimitAndGainNothing.
     std::size_t nodes_per_bounce = 32;
-    /// Predicted impacts that may be handled in a step, however few the contacts. Open: no test reaches it.
-    std::size_t base_events = 64;
-    /// Further predicted impacts for each contact. Test: Settings.AreNoticed.
+    /// Predicted impacts for each contact that may be handled in a step, of all contacts together. Test:
+    /// ImpactBudget.LetsEachContactHaveAllItsBounces.
     std::size_t events_per_contact = 32;
     /// Number of sites of one collision beyond which no other contact is added; further contacts have events of their
     /// own. Test: Settings.AreNoticed.
@@ -55,8 +54,7 @@ inline constexpr auto settings_of<ImpactBudgetSettings> = std::tuple{
     Setting{"pile_bounces", &ImpactBudgetSettings::pile_bounces, 1, 1e9},
     Setting{"bodies_per_pile_bounce", &ImpactBudgetSettings::bodies_per_pile_bounce, 1, 1e9},
     Setting{"nodes_per_bounce", &ImpactBudgetSettings::nodes_per_bounce, 1, 1e9},
-    Setting{"base_events", &ImpactBudgetSettings::base_events, 1, 1e9},
-    Setting{"events_per_contact", &ImpactBudgetSettings::events_per_contact, 0, 1e6},
+    Setting{"events_per_contact", &ImpactBudgetSettings::events_per_contact, 1, 1e6},
     Setting{"max_simultaneous_sites", &ImpactBudgetSettings::max_simultaneous_sites, 1, 1e6},
     Setting{"simultaneous_fraction", &ImpactBudgetSettings::simultaneous_fraction, 0, 1},
     Setting{"pile_order_fraction", &ImpactBudgetSettings::pile_order_fraction, 0, 1},

@@ -36,8 +36,6 @@ struct ImpactSettings {
     int rough_refine_iterations = 4;
     /// Gap over patch_gap up to which the last of these iterations is accurate enough. Test: Settings.AreNoticed.
     double refine_gap_ratio = 10;
-    /// The same for a body that hits a pile and does not bounce. Open: no test reaches it.
-    double rough_refine_gap_ratio = 2;
     /// Displacement of a pair since the start of the step, over the smaller body's size, up to which its contact is
     /// still accurate enough, for a body that hits a pile and does not bounce. Test: Settings.AreNoticed.
     double region_travel_fraction = 0.05;
@@ -64,7 +62,6 @@ inline constexpr auto settings_of<ImpactSettings> = std::tuple{
     Setting{"refine_iterations", &ImpactSettings::refine_iterations, 1, 1000},
     Setting{"rough_refine_iterations", &ImpactSettings::rough_refine_iterations, 1, 1000},
     Setting{"refine_gap_ratio", &ImpactSettings::refine_gap_ratio, 0, 1e6},
-    Setting{"rough_refine_gap_ratio", &ImpactSettings::rough_refine_gap_ratio, 0, 1e6},
     Setting{"region_travel_fraction", &ImpactSettings::region_travel_fraction, 0, 1},
     Setting{"elastic_restitution", &ImpactSettings::elastic_restitution, 0, 1},
     Setting{"held_acceleration_tolerance", &ImpactSettings::held_acceleration_tolerance, 0, 10},

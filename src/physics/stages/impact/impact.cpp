@@ -472,7 +472,7 @@ void ImpactStage::run() {
     memory_.events.clear();
     memory_.has_lists = memory_.has_joint_lists = false;
     predict_all();
-    std::size_t left = settings_.budget.base_events + settings_.budget.events_per_contact * count;
+    std::size_t left = settings_.budget.events_per_contact * count;
     while (!memory_.events.empty()) {
         const ImpactEvent event = memory_.events.front();
         std::pop_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());

@@ -116,8 +116,7 @@ bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manif
     const int max_iterations = is_rough ? settings_.rough_refine_iterations : settings_.refine_iterations;
     const double start = paths_.earliest_time(contact);
     const double tolerance = is_rough ? settings_.patch_gap : settings_.touch_gap;
-    const double last_gap =
-        (is_rough ? settings_.rough_refine_gap_ratio : settings_.refine_gap_ratio) * settings_.patch_gap;
+    const double last_gap = settings_.refine_gap_ratio * settings_.patch_gap;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
         collide_at(contact, time);
         const Manifold* found = find_region(contact);
