@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/definitions/deformable_primitives.h"
 #include "validation/reference.h"
@@ -87,6 +88,33 @@ TEST(BeginsInside, AHeavyRopeDoesNotKickALightBox) {
     for (int k = 0; k < 240; ++k) {
         world->step();
         EXPECT_LT(energy(*world), start + lift) << k;
+    }
+}
+
+// Springs that lift it out would give the box, which bounces between the rope and the floor, more and more energy.
+TEST(BeginsInside, ARopeShootsNoBoxAway) {
+    for (const double density : {1.0, 20.0, 83.0}) {  // kg/m
+        for (const double low : {-0.2, -0.15, -0.1, -0.05, 0.0}) {
+            const auto world = make_world({.sleeping = false});
+            add_plane(*world, friction(0.5));
+            const BodyHandle box =
+                world
+                    ->create_body({.shape = world->create_shape(BoxShape{{0.05, 0.05, 0.05}}).value(),
+                                   .position = {0, 0.3, 0},
+                                   .mass = {.mass = 1}})
+                    .value();
+            DeformableDefinition rope =
+                rope_between({0, low, 0}, {0, 0.4, 0}, 0.04,
+                             {.linear_density = density, .axial_stiffness = 1e5, .rayleigh_damping = 0.01});
+            rope.contact_radius = 0.01;
+            ASSERT_TRUE(world->create_deformable(rope).ok());
+            double fastest = 0;  // m/s
+            for (int k = 0; k < 120; ++k) {
+                world->step();
+                fastest = std::max(fastest, length(world->linear_velocity(box)));
+            }
+            EXPECT_LT(fastest, 1.2 * std::sqrt(2 * gravity * 0.25)) << density << " kg/m from " << low;
+        }
     }
 }
 

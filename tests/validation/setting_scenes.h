@@ -18,5 +18,7 @@ struct SettingScene {
 
 /// Scenes of what golden_scenes() have not: sleep, matter that bends, liquids.
 std::span<const SettingScene> setting_scenes();
+/// More of matter that bends and of liquids.
+std::span<const SettingScene> matter_setting_scenes();
 
 }  // namespace embody::physics

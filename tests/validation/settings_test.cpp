@@ -25,24 +25,6 @@ constexpr const char* groups[] = {"collision", "constraint", "deformable", "flui
 /// notices one takes it from here.
 constexpr std::string_view not_reached[] = {
     "deformable.cloth.joining_iterations",
-    "deformable.cloth.max_parts",
-    "deformable.rope.move_tolerance_together",
-    "deformable.sleep.wake_speed",
-    "deformable.solid.max_halvings",
-    "deformable.solid.max_turn_back",
-    "deformable.solid_contact.one_side_cosine",
-    "deformable.solid_contact.parted_depth",
-    "deformable.solid_contact.parting_samples",
-    "deformable.thin_contact.free_push_speed",
-    "deformable.thin_contact.load_stiffness_factor",
-    "deformable.thin_contact.max_energy_ratio",
-    "deformable.thin_contact.max_momentum_turn",
-    "deformable.thin_search.covered_cosine",
-    "deformable.thin_search.max_plane_angle",
-    "fluid.cells.box_cells_per_particle",
-    "fluid.components.body_distance",
-    "fluid.sleep.max_sinking_speed",
-    "fluid.sleep.quiet_speed",
 };
 
 bool is_tried(const std::string& path, std::size_t place) {
@@ -104,8 +86,10 @@ struct Judge {
 // All scenes, those of the group first.
 std::vector<Judge> judges_for(const std::string& group) {
     std::vector<Judge> judges;
-    for (const SettingScene& scene : setting_scenes()) {
-        if (scene.group == group) judges.push_back({scene.name, scene.build, scene.steps});
+    for (const auto scenes : {setting_scenes(), matter_setting_scenes()}) {
+        for (const SettingScene& scene : scenes) {
+            if (scene.group == group) judges.push_back({scene.name, scene.build, scene.steps});
+        }
     }
     if (group != "fluid" && group != "deformable") {
         for (const Golden& golden : golden_scenes()) judges.push_back({golden.name, golden.build, 120});

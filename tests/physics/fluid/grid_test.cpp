@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "physics/fluid/grid/four.h"
 #include "physics/fluid/grid/liquid_cells.h"
@@ -60,6 +61,20 @@ TEST(FluidGrid, RemovesStrayParticlesThatWouldNeedTooLargeABox) {
     double cells = 1;
     for (const int size : grid.size()) cells *= size;
     EXPECT_LE(cells, static_cast<double>(FluidCellSettings{}.min_box_cells));
+}
+
+TEST(FluidGrid, KeepsStraysAsLongAsItsBoxHasCellsForThemAll) {
+    TaskPool workers(1);
+    FluidCellSettings settings;
+    settings.min_box_cells = 100'000;
+    for (const auto& [per_particle, wanted] : {std::pair{16u, 0u}, {14u, 1u}}) {
+        settings.box_cells_per_particle = per_particle;
+        FluidGrid grid(h);
+        std::vector<FluidParticle> particles = fill_cells(h, {0, 0, 0}, {10, 10, 10});
+        ASSERT_EQ(particles.size(), 8000u);
+        particles.push_back(at(10.05f, 0.05f, 0.05f));  // with the tiles around, 15 cells for each
+        EXPECT_EQ(grid.cover(particles, settings, workers), wanted) << per_particle;
+    }
 }
 
 TEST(FluidGrid, BoxHoldsOneParticleWithTilesAround) {

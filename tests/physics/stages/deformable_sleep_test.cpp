@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "make_world.h"
 #include "physics/definitions/deformable_primitives.h"
-#include "physics/inter/world.h"
 
 namespace embody::physics {
 namespace {
@@ -25,7 +26,7 @@ DeformableDefinition brick_at(Vec3 position) {
 
 /// A soft brick asleep on a floor, held at one corner by a hand that is still.
 struct SleepingBrick {
-    std::unique_ptr<World> world = World::create().value();
+    std::unique_ptr<World> world = make_world();
     BodyHandle floor = add_box({2, 0.5, 2}, {.kind = BodyKind::static_body, .position = {0, -0.5, 0}});
     BodyHandle hand = add_box({0.01, 0.01, 0.01},
                               {.kind = BodyKind::kinematic_body, .position = {-0.2, 0.001, -0.2}, .collision_mask = 0});
@@ -123,6 +124,19 @@ TEST(DeformableSleep, IsNotEndedByUnrelatedChanges) {
         scene.run(20);
         EXPECT_TRUE(scene.world->is_asleep(scene.brick)) << what;
         EXPECT_EQ(scene.nodes(), before) << what;
+    }
+}
+
+TEST(DeformableSleep, IsEndedByWhatPassesCloseNeitherSlowlyNorFarAway) {
+    const double radius = DeformableDefinition{}.contact_radius;
+    for (const auto& [speed, gap, wakes] :
+         {std::tuple{0.03, radius, false}, {0.08, radius, true}, {0.08, 0.1, false}}) {
+        SleepingBrick scene;
+        scene.add_box(
+            {0.05, 0.05, 0.05},
+            {.kind = BodyKind::kinematic_body, .position = {0.25 + gap, 0.1, 0}, .linear_velocity = {0, 0, speed}});
+        scene.run(5);
+        EXPECT_NE(scene.world->is_asleep(scene.brick), wakes) << speed << " m/s at " << gap << " m";
     }
 }
 

@@ -18,7 +18,7 @@ struct DeformableSleepSettings {
     /// Test: Settings.AreNoticed.
     double max_displacement = 1e-3;
     /// Speed from which on a body or deformable wakes what is within its reach, m/s. Source: above max_speed, and as
-    /// Box2D's sleep threshold of 0.05 m/s. Open: no test reaches it.
+    /// Box2D's sleep threshold of 0.05 m/s. Test: DeformableSleep.IsEndedByWhatPassesCloseNeitherSlowlyNorFarAway.
     double wake_speed = 0.05;
 };
 

@@ -51,7 +51,7 @@ struct FluidCellSettings {
     /// Settings.AreNoticed.
     float full_fraction = 0.9f;
     /// Maximum cells of the grid's box for each particle; stray particles that would need more are removed. Source: a
-    /// cell takes some 110 bytes, so many of them 1.7 kB a particle. Open: no test reaches it.
+    /// cell takes some 110 bytes, so many of them 1.7 kB a particle. Test: Settings.AreNoticed.
     std::size_t box_cells_per_particle = 16;
     /// Cells that the box may always have, however few particles there are. Source: 0.2 GB at 110 bytes a cell. Test:
     /// Settings.AreNoticed.

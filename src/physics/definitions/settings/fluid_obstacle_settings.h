@@ -92,7 +92,7 @@ static_assert(setting_count<FluidDropSettings> == member_count<FluidDropSettings
 
 /// Connected components of liquid that nothing holds (src/physics/fluid/particles/free_components.cpp).
 struct FluidComponentSettings {
-    /// Distance from a body, cells, up to which a drop belongs to the body's component. Open: no test reaches it.
+    /// Distance from a body, cells, up to which a drop belongs to the body's component. Test: Settings.AreNoticed.
     float body_distance = 1.5f;
     /// Number of particles of a component from which on its angular momentum is corrected: the cells do not resolve the
     /// rotation of fewer. Source: eight cells of liquid. Test: Settings.AreNoticed.

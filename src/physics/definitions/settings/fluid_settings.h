@@ -11,7 +11,7 @@ namespace embody::physics {
 /// When a fluid falls asleep (src/physics/stages/fluid/fluids.cpp). When it wakes a body that sleeps in it:
 /// OptimizationSettings::wake_force_fraction.
 struct FluidSleepSettings {
-    /// Speed below which all particles but a few drops are quiet, m/s. Open: no test reaches it.
+    /// Speed below which all particles but a few drops are quiet, m/s. Test: Settings.AreNoticed.
     double quiet_speed = 0.01;
     /// How long a fluid has to be quiet, s. Test: FluidContainer.WaterDroppedIntoATubComesToRestAndSleeps.
     double time_to_sleep = 1;

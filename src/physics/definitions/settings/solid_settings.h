@@ -36,10 +36,10 @@ struct SolidSettings {
     /// rotations lag by about that many radians, and the error of a strain's energy is the square of that. Test:
     /// Settings.AreNoticed.
     double energy_travel_fraction = 0.02;
-    /// How often a move that adds energy is halved; the last time it becomes zero. Open: no test reaches it.
+    /// How often a move that adds energy is halved; the last time it becomes zero. Test: Settings.AreNoticed.
     int max_halvings = 4;
     /// Maximum turn by which the velocities of a new solid are turned back, rad: that of half a substep, where the
-    /// solid's spin is slow enough to be followed. Open: no test reaches it.
+    /// solid's spin is slow enough to be followed. Test: SoftSolid.ASpinBeyondWhatStepsCanFollowMakesNoEnergy.
     double max_turn_back = 0.3;
 };
 
@@ -98,13 +98,13 @@ struct SolidContactSettings {
     /// Depth of the points that count for that fraction, over a triangle's mean side: contacts never leave a node so
     /// deep in a step. Test: Settings.AreNoticed.
     double parting_depth = 0.5;
-    /// The same depth while the two are being separated: until no point is so deep. Open: no test reaches it.
+    /// The same depth while the two are being separated: until no point is so deep. Test: Settings.AreNoticed.
     double parted_depth = 0.1;
     /// Number of sample points of a surface. Source: with 64, a fraction of an eighth, parting_fraction, is known to a
-    /// third. Open: no test reaches it.
+    /// third. Test: Settings.AreNoticed.
     std::size_t parting_samples = 64;
     /// Mean of a body's normals at the nodes within it above which its faces push to one side and separate the two by
-    /// themselves. Open: no test reaches it.
+    /// themselves. Test: BeginsInside.ASoftCubeLeavesABoxWhole.
     double one_side_cosine = 0.5;
     /// Reach of a body, over a triangle's mean side, below which nodes may miss the body: contacts of its corners and
     /// balls are looked for, too. Test: SoftSolid.ABallSmallerThanItsElementsStaysOn.

@@ -11,7 +11,7 @@ struct ThinContactSettings {
     /// docs/physics/cloth.md: the method of multipliers is stable from 1 on, and converges faster the stiffer it is.
     /// Test: Settings.AreNoticed.
     double stiffness_factor = 20;
-    /// The same over the inertia of the load on a point. Open: no test reaches it.
+    /// The same over the inertia of the load on a point. Test: Settings.AreNoticed.
     double load_stiffness_factor = 4;
     /// The same over the inertia of a body in which a node begins, at that place. Test: Settings.AreNoticed.
     double recovery_stiffness_factor = 2;
@@ -47,17 +47,17 @@ struct ThinContactSettings {
     /// Cosine between normals above which the nodes of two edges already keep the edges apart. Test:
     /// Settings.AreNoticed.
     double held_edge_cosine = 0.7;
-    /// Maximum energy that springs may give a body, over that of its move in the solve. Open: no test reaches it.
+    /// Maximum energy that springs give a body, over that of its solved move. Test: BeginsInside.ARopeShootsNoBoxAway.
     double max_energy_ratio = 4;
-    /// Speed up to which springs may push a body without that limit, m/s. Open: no test reaches it.
+    /// Speed up to which springs may push a body without that limit, m/s. Test: BeginsInside.ARopeShootsNoBoxAway.
     double free_push_speed = 0.5;
     /// Minimum of the acceleration that stands for gravity, m/s²: forces are turned into loads by it, and accuracy is
     /// measured by it. Test: Settings.AreNoticed.
     double min_gravity = 1;
     /// Iterations that restore the momenta of what nothing holds. Test: Settings.AreNoticed.
     int momentum_iterations = 5;
-    /// Turn in a substep beyond which they are not restored, rad: the arms' motion is then no longer linear. Open: no
-    /// test reaches it.
+    /// Turn in a substep beyond which they are not restored, rad: the arms' motion is then no longer linear. Test:
+    /// Settings.AreNoticed.
     double max_momentum_turn = 0.1;
 };
 
@@ -95,8 +95,8 @@ struct ThinSearchSettings {
     /// Maximum height by which a body may stand out between two nodes whose planes hold it, in contact radii. Test:
     /// Settings.AreNoticed.
     double max_bulge_radii = 0.8;
-    /// Angle between such planes up to which they belong to one face, rad, however short the edge. Open: no test
-    /// reaches it.
+    /// Angle between such planes up to which they belong to one face, rad, however short the edge. Test:
+    /// Settings.AreNoticed.
     double max_plane_angle = 0.5;
     /// Cosine between a triangle's normal and the edges of a body's corner above which that corner does not poke into
     /// it. Test: Settings.AreNoticed.

@@ -14,7 +14,7 @@ struct ClothSettings {
     double gradient_tolerance = 5e-3;
     /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
-    /// Maximum parts of a substep for fast layers. Open: no test reaches it.
+    /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
     int max_parts = 4;
     /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
     /// an edge a node comes to a triangle that was no candidate. Test: Settings.AreNoticed.
@@ -64,7 +64,7 @@ struct RopeSettings {
     /// Settings.AreNoticed.
     double move_tolerance = 1e-4;
     /// The same displacement where ropes are solved together with sheets, which are solved in floats and to
-    /// gradient_tolerance. Open: no test reaches it.
+    /// gradient_tolerance. Test: Settings.AreNoticed.
     double move_tolerance_together = 1e-3;
     /// Fraction of an iteration's step below which the line search ends. Source: ten tries, each of half the step;
     /// where the energy falls at all, it has fallen by then. Test: Settings.AreNoticed.
