@@ -36,8 +36,6 @@ struct ClothSettings {
     /// method: X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments", 1997.
     /// Test: Settings.AreNoticed.
     double joining_gap_fraction = 0.2;
-    /// Maximum iterations of that. Open: no test reaches it.
-    int joining_iterations = 20;
 };
 
 template <>
@@ -52,7 +50,6 @@ inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"compliance_on_body", &ClothSettings::compliance_on_body, 1e-6, 1},
     Setting{"parting_iterations", &ClothSettings::parting_iterations, 0, 1e4},
     Setting{"joining_gap_fraction", &ClothSettings::joining_gap_fraction, 0, 1},
-    Setting{"joining_iterations", &ClothSettings::joining_iterations, 0, 1e4},
 };
 static_assert(setting_count<ClothSettings> == member_count<ClothSettings>(), "a setting is in no list");
 

@@ -188,18 +188,18 @@ void push(const LayerContact& contact, Vec3 by, std::span<const double> complian
 }
 
 // Where pushes did not separate them all: nodes that would pass through each other move together for this substep, with
-// the mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
+// the mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997). Nodes
+// that were joined may come to others. It ends: each pass but the last leaves fewer zones.
 void join(std::span<const LayerContact> contacts, const LayerParting& parting, std::span<Vec3> moves) {
     const std::span<const double> compliance = parting.compliance;
     const double min_fraction = parting.settings.joining_gap_fraction;
-    const int max_iterations = parting.settings.joining_iterations;
     std::vector<std::uint32_t> zone(moves.size());
     for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
     const auto root_of = [&](std::uint32_t i) {
         while (zone[i] != i) i = zone[i] = zone[zone[i]];
         return i;
     };
-    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    for (;;) {
         bool has_joined = false;
         for (const LayerContact& contact : contacts) {
             const double end = contact.distance + dot(contact.normal, displacement_of(contact, moves));
