@@ -4,7 +4,7 @@
 
 Usage: check_settings.py [--list] [ROOT]   (default: the folder above this file)
 - Each setting of src/physics/definitions/settings has a comment with "Source: ...", "Bench: scene",
-  "Test: Suite.Name, Suite.Name", of which each exists, or "Open: ..." where nothing shows its effect yet. WorldSettings, which users set, are not checked.
+  "Test: Suite.Name, Suite.Name", of which each exists. WorldSettings, which users set, are not checked.
   Each is reached from SolverSettings.
 - Each other named numerical constant in src/physics has a comment that says what it bounds: on its line, on the line
   where its declaration ends, or on the line above it or above the constants before it. Sentinels and tags need none.
@@ -44,7 +44,7 @@ def check_settings(path: pathlib.Path, tests: set, wrong: list, settings: list):
             continue
         comment = comment_above(lines, at)
         where = f"{path.name}:{at + 1}: {member[1]}"
-        origin = re.search(r"\b(Source|Test|Bench|Open): (.+)", comment)
+        origin = re.search(r"\b(Source|Test|Bench): (.+)", comment)
         if not origin:
             wrong.append(f"{where} has no source: write Source:, Test: or Bench: into the comment above it")
             continue
@@ -117,8 +117,7 @@ def main() -> int:
     if not settings or not tests:
         print("nothing was found: is this the right folder?")
         return 1
-    still_open = sum("Open: " in origin for _, _, origin in settings)
-    print(f"{len(settings)} settings, {still_open} of them open, {len(wrong)} faults")
+    print(f"{len(settings)} settings, {len(wrong)} faults")
     return 1 if wrong else 0
 
 
