@@ -2,7 +2,9 @@
 // A file is written whole or stays as it was, whatever stops the writing; and nothing is left beside it.
 #include "scene/file/whole_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -95,6 +97,25 @@ TEST(WholeFile, TakesTheNextNameForItsDraft) {
     for (int number = 1; number <= taken; number += 7) fs::remove(draft(number));
     ASSERT_TRUE(write_whole_file(file, "text").ok());
     EXPECT_EQ(content_of(file), "text");
+}
+
+TEST(WholeFile, RemovesTheDraftsOfProgramsThatEnded) {
+    const test::TemporaryFolder folder;
+    const auto draft = [&](const char* name) {
+        return folder / (std::string("scene.json.77-") + name + ".embody-draft");
+    };
+    for (const char* name : {"ended", "written"}) std::ofstream(draft(name)) << "half";
+    fs::create_symlink(folder / "elsewhere", draft("link"));
+    const int writer = open(draft("written").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(flock(writer, LOCK_EX | LOCK_NB), 0);
+    ASSERT_TRUE(write_whole_file(folder / "scene.json", "text").ok());
+    EXPECT_FALSE(fs::exists(draft("ended")));
+    EXPECT_TRUE(fs::exists(draft("written"))) << "locked: somebody writes it";
+    EXPECT_TRUE(fs::is_symlink(draft("link"))) << "no file";
+    close(writer);
+    remove_abandoned_drafts(folder.path());
+    EXPECT_FALSE(fs::exists(draft("written")));
+    remove_abandoned_drafts(folder / "nowhere");
 }
 
 TEST(WholeFile, RefusesWhatIsNoFileByItsName) {
