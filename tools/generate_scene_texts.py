@@ -108,7 +108,7 @@ def typescript(types: list) -> str:
             out += f"\nexport type {name} ={alternatives};\n"
     settings = next(one for one in types if one["name"] == "SceneSettings")
     defaults = "".join(f"  {field['name']}: {json.dumps(plain(field['default']))},\n" for field in settings["fields"])
-    return out + f"\n/** Of a scene that says nothing else. */\nexport const DEFAULT_SETTINGS: SceneSettings = {{\n{defaults}}};\n"
+    return out + f"\n/** Settings of a scene that sets none. */\nexport const DEFAULT_SETTINGS: SceneSettings = {{\n{defaults}}};\n"
 
 
 # The schema ------------------------------------------------------------------------------------------------------------
