@@ -440,9 +440,12 @@ bool JointSystem::advance_in_one(double time, Motion motion, const View& view) {
 
     // Motion.
     begin_phase(SolvePhase::position, time, motion, view);
-    if (!iterate(view) && motion == Motion::any) {
-        for (Body& body : bodies_) body.own_spin = {};
-        return false;
+    if (!iterate(view)) {
+        if (motion == Motion::any) {
+            for (Body& body : bodies_) body.own_spin = {};
+            return false;
+        }
+        bound_energy(energy, view);  // before the drift by what the last iteration left
     }
     end_position_phase(view);
     add_impulses_to_totals(view);
@@ -450,10 +453,12 @@ bool JointSystem::advance_in_one(double time, Motion motion, const View& view) {
     prepare_all(view);
     bound_energy(energy, view);
 
-    // Velocities.
+    // Velocities. Their projection onto those that the joints allow adds no energy, whether or not it converges.
     for (const Body& body : bodies_) kick(view.bodies[body.slot], view.constants[body.slot], time / 2);
+    const double kicked_energy = kinetic_energy(view);
     begin_phase(SolvePhase::velocity, time, motion, view);
     iterate(view);
+    bound_energy(kicked_energy, view);
     add_impulses_to_totals(view);
     return true;
 }
