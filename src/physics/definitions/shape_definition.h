@@ -21,6 +21,8 @@ struct SphereShape {
     double radius = 0.5;
 
     static void lengths(auto& sphere, auto&& visit) { visit("radius", sphere.radius, a_length); }
+
+    friend bool operator==(const SphereShape&, const SphereShape&) = default;
 };
 struct BoxShape {
     static constexpr const char* name = "box";
@@ -29,6 +31,8 @@ struct BoxShape {
     static void lengths(auto& box, auto&& visit) {
         visit("half_extents", box.half_extents, "half the lengths of the edges, [x, y, z]");
     }
+
+    friend bool operator==(const BoxShape&, const BoxShape&) = default;
 };
 struct CapsuleShape {
     static constexpr const char* name = "capsule";
@@ -36,6 +40,8 @@ struct CapsuleShape {
     double half_height = 0.5;  ///< half the distance between the two cap centres
 
     static void lengths(auto& capsule, auto&& visit) { round_lengths(capsule, visit); }
+
+    friend bool operator==(const CapsuleShape&, const CapsuleShape&) = default;
 };
 struct CylinderShape {
     static constexpr const char* name = "cylinder";
@@ -43,6 +49,8 @@ struct CylinderShape {
     double half_height = 0.5;
 
     static void lengths(auto& cylinder, auto&& visit) { round_lengths(cylinder, visit); }
+
+    friend bool operator==(const CylinderShape&, const CylinderShape&) = default;
 };
 /// Apex at +half_height, base circle at -half_height. The centre of mass lies half_height / 2 below the origin.
 struct ConeShape {
@@ -51,6 +59,8 @@ struct ConeShape {
     double half_height = 0.5;
 
     static void lengths(auto& cone, auto&& visit) { round_lengths(cone, visit); }
+
+    friend bool operator==(const ConeShape&, const ConeShape&) = default;
 };
 /// Convex hull of the points; at least four that span a volume. At most max_hull_vertices of them are kept.
 struct HullShape {
@@ -58,6 +68,8 @@ struct HullShape {
     std::vector<Vec3> points;
 
     [[nodiscard]] const std::vector<Vec3>& corners() const { return points; }
+
+    friend bool operator==(const HullShape&, const HullShape&) = default;
 };
 inline constexpr int max_hull_vertices = 256;  ///< more are simplified
 
@@ -66,6 +78,8 @@ struct PlaneShape {
     static constexpr const char* name = "plane";
     Vec3 normal{0, 1, 0};  ///< any length but zero
     double offset = 0;     ///< in units of the normalised normal
+
+    friend bool operator==(const PlaneShape&, const PlaneShape&) = default;
 };
 /// Heights over the XZ plane: sample (column c, row r) is at x = c * cell.x, y = heights[r * columns + c],
 /// z = r * cell.z, each cell split along the diagonal from (c, r) to (c+1, r+1). Static bodies only.
@@ -75,12 +89,16 @@ struct HeightfieldShape {
     int rows = 0;     ///< samples along Z, >= 2
     double cell_x = 1, cell_z = 1;
     std::vector<float> heights;  ///< columns * rows
+
+    friend bool operator==(const HeightfieldShape&, const HeightfieldShape&) = default;
 };
 /// One-sided triangles, counter-clockwise seen from outside. Static bodies only.
 struct MeshShape {
     static constexpr const char* name = "mesh";
     std::vector<Vec3f> positions;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+
+    friend bool operator==(const MeshShape&, const MeshShape&) = default;
 };
 
 struct CompoundChild;
@@ -98,7 +116,10 @@ using ShapeDefinition = std::variant<SphereShape, BoxShape, CapsuleShape, Cylind
 struct CompoundChild {
     ConvexShape shape;
     Transform local;  ///< of the child in the compound's frame
+
+    friend bool operator==(const CompoundChild&, const CompoundChild&) = default;
 };
+inline bool operator==(const CompoundShape& a, const CompoundShape& b) { return a.children == b.children; }
 
 /// Whether every number is finite and in its stated range; the error's `where` is the field, e.g. "radius".
 Result<void> validate(const ShapeDefinition& definition);
