@@ -56,12 +56,11 @@ int run_serve(const ServeArguments& arguments) {
     std::fflush(stdout);
     if (arguments.open_browser) open_in_browser((*server)->url());
     (*server)->run();
-    const auto ended = (*server)->end_within(longest_end);
-    if (ended.ok() && *ended) return exit_ok;
-    // What is still running is left to the system: the scene is saved, and the database is consistent at any moment.
-    const int code = ended ? int{exit_ok} : report(ended.error());
+    if ((*server)->end_within(longest_end)) return exit_ok;
+    // What is still running is left to the system: edits are in the journal, and the database is consistent at any
+    // moment.
     std::fflush(nullptr);
-    std::_Exit(code);
+    std::_Exit(exit_ok);
 }
 
 }  // namespace embody::cli

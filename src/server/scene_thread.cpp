@@ -23,7 +23,6 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 constexpr auto statistics_period = std::chrono::milliseconds(250);
-constexpr auto autosave_period = std::chrono::seconds(20);
 /// Longest time until a change of the database by another program is seen.
 constexpr auto catalog_period = std::chrono::seconds(1);
 /// After publishing, the next pause is at least so many times as long as the publishing took.
@@ -66,7 +65,7 @@ struct SceneThread::State {
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
-    Clock::time_point statistics_due{}, autosave_due{}, catalog_due{}, statistics_since{};
+    Clock::time_point statistics_due{}, catalog_due{}, statistics_since{};
     Clock::time_point next_publish{}, next_debug{};
     bool publish_is_due = false;       ///< something may have changed since the last publish()
     ClientId served = 0;               ///< the client whose command is being executed
@@ -83,14 +82,13 @@ struct SceneThread::State {
     bool tell_progress(std::size_t done, std::size_t total);
     [[nodiscard]] bool stop_is_asked();
     [[nodiscard]] bool stop_is_requested() const;
-    void follow_catalog();
+    void follow_others();
     void tell_events();
     void publish(bool all_changed);
     void publish_if_due();
     void publish_debug();
     void tell_statistics(Clock::time_point now);
     void broadcast_message(const char* level, const std::string& text);
-    void autosave();
     void play_until(Clock::time_point& due);
 };
 
@@ -136,8 +134,11 @@ void SceneThread::post(ClientId client, std::string message) {
 }
 
 void SceneThread::forget(ClientId client) {
-    const std::lock_guard lock(state_->mutex);
-    state_->messages.push_back({client, {}, nullptr, true});
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->messages.push_back({client, {}, nullptr, true});
+    }
+    state_->changed.notify_all();
 }
 
 StateBoard::Frame SceneThread::frame_since(std::uint64_t seen) const { return state_->board.frame_since(seen); }
@@ -169,8 +170,6 @@ bool SceneThread::wait_ended(Clock::time_point until) {
     std::unique_lock lock(state_->mutex);
     return state_->changed.wait_until(lock, until, [this] { return state_->ended; });
 }
-
-Result<void> SceneThread::rescue() { return state_->session->rescue(); }
 
 Result<void> SceneThread::State::open_safely() {
     try {
@@ -207,7 +206,6 @@ Result<void> SceneThread::State::open() {
 
 void SceneThread::State::run() {
     Clock::time_point due = Clock::now();
-    autosave_due = due + autosave_period;
     for (;;) {
         // Wait for a command, or until the next step is due.
         std::deque<Message> taken;
@@ -217,8 +215,7 @@ void SceneThread::State::run() {
             if (session->playing())
                 changed.wait_until(lock, due, ready);
             else
-                changed.wait_until(
-                    lock, std::min({autosave_due, catalog_due, publish_is_due ? next_publish : autosave_due}), ready);
+                changed.wait_until(lock, publish_is_due ? std::min(catalog_due, next_publish) : catalog_due, ready);
             taken.swap(messages);
             if (stop) break;
         }
@@ -232,20 +229,17 @@ void SceneThread::State::run() {
             play_until(due);
         else
             due = Clock::now();
-        if (Clock::now() >= catalog_due) follow_catalog();
-        if (Clock::now() >= autosave_due) {
-            autosave_due = Clock::now() + autosave_period;
-            autosave();
-        }
+        if (Clock::now() >= catalog_due) follow_others();
     }
-    // Save when the server ends, so that nothing is lost.
-    autosave();
 }
 
-void SceneThread::State::follow_catalog() {
+// Changes of the catalogue by other programs, and questions whose time is over.
+void SceneThread::State::follow_others() {
     catalog_due = Clock::now() + catalog_period;
     try {
-        if (session->follow_catalog()) tell_events();
+        session->follow_question(catalog_due);
+        (void)session->follow_catalog();
+        tell_events();
     } catch (const std::exception& thrown) {
         broadcast_message("warning", std::string("The database could not be followed: ") + thrown.what());
     }
@@ -274,14 +268,6 @@ bool SceneThread::State::stop_is_asked() {
                const json request = json::parse(message.text, nullptr, false);
                return request.is_object() && request.value("command", json()) == "catalog.stop";
            });
-}
-
-void SceneThread::State::autosave() {
-    try {
-        if (const auto saved = session->autosave(); !saved) broadcast_message("warning", saved.error().message());
-    } catch (const std::exception& thrown) {
-        broadcast_message("warning", std::string("The scene could not be kept: ") + thrown.what());
-    }
 }
 
 void SceneThread::State::broadcast_message(const char* level, const std::string& text) {
@@ -326,7 +312,8 @@ void SceneThread::State::handle(const Message& message) {
     if (message.take_document) return message.take_document(session->document());
     if (message.left) {
         debug.forget(message.client);
-        return session->forget_client(message.client);
+        session->forget_client(message.client);
+        return tell_events();
     }
     const bool was_playing = session->playing();
     const std::uint64_t step_before = session->simulated_steps();
@@ -381,6 +368,7 @@ void SceneThread::State::tell_events() {
         document_changed = document_changed || event.value("event", "") == "document";
         listener.broadcast(dump(event));
     }
+    for (const auto& [client, event] : events.directed) listener.send(client, dump(event));
     if (events.all_poses) return publish(true);
     if (document_changed || !session->playing()) publish_is_due = true;
     publish_if_due();

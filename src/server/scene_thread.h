@@ -28,6 +28,7 @@ struct SceneThreadOptions {
 struct SceneThreadListener {
     std::function<void(ClientId, std::string reply)> reply;
     std::function<void(std::string event)> broadcast;
+    std::function<void(ClientId, std::string event)> send;  ///< to one client, in order with replies and broadcasts
     std::function<void()> states_changed;
 };
 
@@ -36,7 +37,7 @@ struct SceneThreadListener {
 class SceneThread {
 public:
     static Result<std::unique_ptr<SceneThread>> start(const SceneThreadOptions& options, SceneThreadListener listener);
-    /// Stops after the current command; autosaves.
+    /// Stops after the current command.
     ~SceneThread();
 
     /// A text message of a client, unparsed. Exactly one reply will follow.
@@ -57,12 +58,10 @@ public:
     /// where the thread ends before.
     void request_document(std::function<void(scene::Document)> take);
 
-    /// The thread autosaves after the current command, and ends.
+    /// The thread ends after the current command.
     void request_stop();
     /// Waits until then; returns whether the thread has ended.
     bool wait_ended(std::chrono::steady_clock::time_point until);
-    /// For a command that does not end after request_stop(): autosaves the document as it was before that command.
-    Result<void> rescue();
 
 private:
     SceneThread();

@@ -570,6 +570,7 @@ struct Server::State {
     void accept_later(const error_code& error);
     void welcome(tcp::socket socket);
     [[nodiscard]] std::vector<std::shared_ptr<WebSocketClient>> clients() const;
+    [[nodiscard]] std::shared_ptr<WebSocketClient> client(ClientId id) const;  ///< null: it has left
     SceneThreadListener listener();
     void stop();
     void request_end();
@@ -690,14 +691,21 @@ std::vector<std::shared_ptr<WebSocketClient>> Server::State::clients() const {
     return all;
 }
 
+std::shared_ptr<WebSocketClient> Server::State::client(ClientId id) const {
+    const auto found = shared.clients.find(id);
+    return found == shared.clients.end() ? nullptr : found->second;
+}
+
 SceneThreadListener Server::State::listener() {
     SceneThreadListener listener;
     listener.reply = [this](ClientId id, std::string text) {
         asio::post(shared.io, [this, id, text = std::move(text)]() mutable {
-            const auto found = shared.clients.find(id);
-            if (found == shared.clients.end()) return;
-            const std::shared_ptr<WebSocketClient> client = found->second;
-            client->send_reply(std::move(text));
+            if (const auto to = client(id)) to->send_reply(std::move(text));
+        });
+    };
+    listener.send = [this](ClientId id, std::string text) {
+        asio::post(shared.io, [this, id, text = std::make_shared<const std::string>(std::move(text))] {
+            if (const auto to = client(id)) to->send_text(text);
         });
     };
     listener.broadcast = [this](std::string text) {
@@ -754,7 +762,7 @@ void Server::run() {
     }
 }
 
-Result<bool> Server::end_within(std::chrono::milliseconds time) {
+bool Server::end_within(std::chrono::milliseconds time) {
     Shared& shared = state_->shared;
     state_->request_end();
     const Clock::time_point until = Clock::now() + time;
@@ -762,9 +770,6 @@ Result<bool> Server::end_within(std::chrono::milliseconds time) {
         shared.upload_queue->wait_ended(until))
         return true;
     shared.uploads->remove_all();
-    if (!shared.scene->wait_ended(Clock::now())) {
-        if (Result<void> kept = shared.scene->rescue(); !kept) return kept.error();
-    }
     return false;
 }
 

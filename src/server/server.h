@@ -33,11 +33,11 @@ public:
     void run();
     /// May be called from any thread.
     void request_stop();
-    /// After run(): ends all that is still running. True: everything has ended in this time, the scene is autosaved,
-    /// and the server can be destroyed. False: something does not end, for example a step of a huge scene or the import
-    /// of a model. Then the scene was autosaved as it was before, uploads are removed, and the process should end
-    /// without destroying the server, which would wait. The error: the scene could not be saved.
-    Result<bool> end_within(std::chrono::milliseconds time);
+    /// After run(): ends all that is still running. True: everything has ended in this time, and the server can be
+    /// destroyed. False: something does not end, for example a step of a huge scene or the import of a model. Then
+    /// uploads are removed, and the process should end without destroying the server, which would wait; every edit is
+    /// in the journal already.
+    bool end_within(std::chrono::milliseconds time);
 
 private:
     Server();

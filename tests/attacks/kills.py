@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Programs killed (SIGKILL) at random times while they write: import, `set`, the saving of a scene, the server's autosave. Acknowledged
+"""Programs killed (SIGKILL) at random times while they write: import, `set`, the saving of a scene, edits of two clients. Acknowledged
 changes are there afterwards, every file is complete, and the same command can continue.
 
-Usage: kills.py EMBODY [--kills N] [--seed S]   (the short form is 24)
+Usage: kills.py EMBODY [--kills N] [--seed S] [--only ACT]   (the short form is 24; ACT is one of import_models, set_values, save_scene, edit)
 """
 import argparse
 import json
@@ -15,6 +15,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import sample_files as samples
@@ -114,13 +115,54 @@ class Trial:
 
     def save_scene(self):
         """Each saved scene is complete and at least as new as the last acknowledged one."""
-        return self.served(lambda viewer, number: viewer.do("scene.save", name="kept"), "scenes/kept.json", True)
+        return self.served()
 
-    def autosave(self):
-        """Each autosave is complete, and one exists after the first was made."""
-        return self.served(lambda viewer, number: None, "scenes/autosave/*.json", False)
+    def edit(self):
+        """Every acknowledged edit of two clients is offered by the next server and opened by it, and nothing that nobody asked for."""
+        server = Server(self.embody, str(self.database), str(self.scene_file("Killed")))
+        try:
+            acknowledged, asked = [0, 0], [0, 0]
 
-    def served(self, after_edit, pattern: str, is_acknowledged: bool):
+            def build(who: int):
+                viewer = Viewer(server.port)
+                try:
+                    viewer.do("hello", person=f"person {who}")
+                    while True:
+                        asked[who] += 1
+                        viewer.do("entity.transform", poses=[{"index": 1 + who, "position": [0, asked[who], 0]}], merge=f"drag {who}")
+                        acknowledged[who] = asked[who]
+                except (OSError, ConnectionError):
+                    viewer.close()
+
+            people = [threading.Thread(target=build, args=(who,)) for who in range(2)]
+            for person in people:
+                person.start()
+            time.sleep(self.chance.uniform(0.02, 0.3))
+            server.process.kill()
+            server.process.wait()
+            for person in people:
+                person.join()
+            server.restart()
+            viewer = Viewer(server.port)
+            offered = viewer.do("hello")["recovered"]
+            assert len(offered) == (1 if sum(acknowledged) else len(offered)) and len(offered) <= 1, f"{acknowledged} acknowledged, offered: {offered}"
+            if offered:
+                assert offered[0]["title"] == "Killed" and offered[0]["edits"] >= sum(acknowledged), offered
+                viewer.do("scene.load", name=offered[0]["name"])
+                entities = viewer.do("hello")["scene"]["entities"]
+                assert len(entities) == len(BOXES), "half a scene"
+                for who in range(2):
+                    height = entities[who]["pose"]["position"][1]
+                    least = acknowledged[who] or min(1, asked[who])
+                    assert least <= height <= max(asked[who], 1), f"client {who} is at {height}, acknowledged was {acknowledged[who]}, asked {asked[who]}"
+            viewer.close()
+        finally:
+            if server.process.poll() is None:
+                server.process.kill()
+            server.close()
+        return -signal.SIGKILL
+
+    def served(self):
         server = Server(self.embody, str(self.database), str(self.scene_file("Killed")))
         home = pathlib.Path(server.home.name)
         acknowledged = 0
@@ -132,26 +174,22 @@ class Trial:
             while time.monotonic() < until:
                 number += 1
                 viewer.do("entity.transform", poses=[{"index": 1, "position": [0, number, 0]}])
-                after_edit(viewer, number)
+                viewer.do("scene.save", name="kept")
                 acknowledged = number
-            # Kill in the middle of the next change, whose answer nobody reads.
+            # Kill in the middle of the next save, whose answer nobody reads.
             viewer.ask("entity.transform", poses=[{"index": 1, "position": [0, number + 1, 0]}])
-            if is_acknowledged:
-                viewer.ask("scene.save", name="kept")
-            else:
-                server.process.send_signal(signal.SIGTERM)
+            viewer.ask("scene.save", name="kept")
             time.sleep(self.chance.uniform(0, 0.03))
             server.process.kill()
             server.process.wait()
             viewer.close()
-            files = [file for file in home.rglob("*.json") if file.match(pattern)]
+            files = [file for file in home.rglob("*.json") if file.match("scenes/kept.json")]
             for file in files:
                 document = json.loads(file.read_text())
                 assert len(document["entities"]) == len(BOXES), "half a scene"
                 height = document["entities"][0]["pose"]["position"][1]
-                assert height in ((acknowledged, acknowledged + 1) if acknowledged or not is_acknowledged else (1, 0, acknowledged + 1)), \
-                    f"saved at {height}, acknowledged was {acknowledged}"
-            assert files or not (is_acknowledged and acknowledged), "a saved scene is not there"
+                assert height in (acknowledged, acknowledged + 1), f"saved at {height}, acknowledged was {acknowledged}"
+            assert files or not acknowledged, "a saved scene is not there"
         finally:
             if server.process.poll() is None:
                 server.process.kill()
@@ -164,12 +202,15 @@ def main() -> int:
     parser.add_argument("embody")
     parser.add_argument("--kills", type=int, default=24)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", choices=["import_models", "set_values", "save_scene", "edit"])
     options = parser.parse_args()
     chance = random.Random(options.seed)
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         trial = Trial(options.embody, pathlib.Path(folder), chance)
-        acts = [trial.import_models, trial.set_values, trial.save_scene, trial.autosave]
+        acts = [trial.import_models, trial.set_values, trial.save_scene, trial.edit]
+        if options.only:
+            acts = [act for act in acts if act.__name__ == options.only]
         counts: dict = {}
         runs = 0
         # The commands in turn until there were as many kills as wanted; some commands end before their kill.
@@ -186,6 +227,8 @@ def main() -> int:
         for name, (killed, whole) in counts.items():
             print(f"{name}: {killed} killed, {whole} ended before")
         # The files that are left can be used.
+        if trial.generation == 0:
+            trial.new_files()
         ended = subprocess.run([options.embody, "import", "--database", str(trial.database), str(trial.models)], capture_output=True, text=True)
         if ended.returncode != 0:
             print(f"the last import ended with {ended.returncode}: {ended.stderr[-300:]}")

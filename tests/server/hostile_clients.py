@@ -63,9 +63,9 @@ class Stage:
         connection.close()
         return answer, body
 
-    def saved_after_end(self) -> list:
-        """The autosaves in the server's home folder; to be read before it is closed."""
-        return sorted(pathlib.Path(self.server.home.name).rglob("autosave/*.json"))
+    def journals_after_end(self) -> list:
+        """The journals in the server's home folder; to be read before it is closed."""
+        return sorted(pathlib.Path(self.server.home.name).rglob("autosave/*.journal"))
 
     def end(self, wrong: list, what: str):
         """Sends SIGTERM and returns how long the server took to end."""
@@ -329,19 +329,21 @@ def test_sigterm_ends_whatever_runs(embody: str, wrong: list):
         stalled = [Viewer(stage.port, buffer=1 << 12) for _ in range(4)]
         upload = begin_upload(stage.port, 255 << 20, 4 << 20)
         stage.end(wrong, "a long command, paused reading, stalled viewers, an upload")
-        check_autosave(stage, 5, wrong)
+        check_journal(stage, 5, wrong)
         for connection in (viewer, *stalled, upload):
             connection.close()
 
 
-def check_autosave(stage: Stage, height: float, wrong: list):
-    saved = stage.saved_after_end()
-    if len(saved) != 1:
-        wrong.append(f"{len(saved)} autosaves after SIGTERM")
+def check_journal(stage: Stage, height: float, wrong: list):
+    journals = stage.journals_after_end()
+    if len(journals) != 1:
+        wrong.append(f"{len(journals)} journals after SIGTERM")
         return
-    entity = next(e for e in json.loads(saved[0].read_text())["entities"] if e["index"] == 1)
-    if entity["pose"]["position"] != [0, height, 0]:
-        wrong.append(f"the autosave has the first entity at {entity['pose']['position']}")
+    # The first edit is in the document itself; each line has its checksum before it.
+    head, document = (json.loads(line.split(" ", 1)[1]) for line in journals[0].read_text().splitlines()[:2])
+    entity = next(e for e in document["document"]["entities"] if e["index"] == 1)
+    if head["embody_journal"] != 1 or entity["pose"]["position"] != [0, height, 0]:
+        wrong.append(f"the journal has the first entity at {entity['pose']['position']}")
 
 
 def children(process: int) -> list:
@@ -374,7 +376,7 @@ def test_sigterm_ends_an_import(embody: str, wrong: list):
         except TimeoutError:
             pass
         stage.end(wrong, "an import in hand")
-        check_autosave(stage, 4, wrong)
+        check_journal(stage, 4, wrong)
         left = [worker for worker in workers if pathlib.Path(f"/proc/{worker}").exists()]
         if not workers or left:
             wrong.append(f"of {len(workers)} workers {len(left)} outlive the server")
@@ -402,9 +404,9 @@ def test_sigterm_ends_a_step_that_takes_long(embody: str, wrong: list):
         viewer.ask("simulation.step", count=10)
         time.sleep(1)
         stage.end(wrong, "a step of 80,000 grains")
-        saved = stage.saved_after_end()
-        if len(saved) != 1 or json.loads(saved[0].read_text())["title"] != "Changed":
-            wrong.append(f"the scene was not kept: {saved}")
+        journals = stage.journals_after_end()
+        if len(journals) != 1 or '"title":"Changed"' not in journals[0].read_text().splitlines()[-1]:
+            wrong.append(f"the last edit was not kept: {journals}")
         viewer.close()
 
 

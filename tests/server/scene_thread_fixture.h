@@ -40,6 +40,11 @@ protected:
             events_.push_back(json::parse(text));
             changed_.notify_all();
         };
+        listener.send = [this](ClientId client, const std::string& text) {
+            const std::lock_guard lock(mutex_);
+            directed_[client].push_back(json::parse(text));
+            changed_.notify_all();
+        };
         listener.states_changed = [] {};
         auto started = SceneThread::start(options, listener);
         if (started)
@@ -89,16 +94,30 @@ protected:
         });
         return found;
     }
+    /// The events of this name for this client alone so far; waits until there is one.
+    std::vector<json> events_to(ClientId client, const std::string& name) {
+        std::unique_lock lock(mutex_);
+        std::vector<json> found;
+        changed_.wait_for(lock, std::chrono::seconds(20), [&] {
+            found.clear();
+            for (const json& event : directed_[client])
+                if (event.at("event") == name) found.push_back(event);
+            return !found.empty();
+        });
+        return found;
+    }
     void forget_events() {
         const std::lock_guard lock(mutex_);
         events_.clear();
+        directed_.clear();
     }
 
     std::filesystem::path folder_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::map<ClientId, std::deque<std::string>> replies_;
-    std::vector<json> events_;
+    std::vector<json> events_;                        ///< for all clients
+    std::map<ClientId, std::vector<json>> directed_;  ///< for one client
     std::unique_ptr<SceneThread> thread_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <future>
 
+#include "scene/session/journal.h"
 #include "server/scene_thread_fixture.h"
 
 namespace embody::server {
@@ -83,12 +84,14 @@ TEST_F(SceneThreadTest, TheDocumentArrivesAfterTheCurrentCommandAndTheCallDoesNo
     EXPECT_EQ(document.get().entities.size(), 1u);
 }
 
-TEST_F(SceneThreadTest, UnsavedChangesAreSavedWhileACommandRuns) {
-    run("scene.settings", {{"title", "Rescued"}});
+TEST_F(SceneThreadTest, UnsavedChangesAreOnDiskWhileACommandRuns) {
+    run("scene.settings", {{"title", "Kept"}});
     thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
-    const Result<void> rescued = thread_->rescue();
-    ASSERT_TRUE(rescued.ok()) << rescued.error().message();
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "saved" / "autosave" / "Rescued.json"));
+    const std::filesystem::path journals = folder_ / "saved" / "autosave";
+    ASSERT_FALSE(std::filesystem::is_empty(journals));
+    const auto kept = scene::read_journal(std::filesystem::directory_iterator(journals)->path());
+    ASSERT_TRUE(kept.ok()) << kept.error().message();
+    EXPECT_EQ(kept.value().document.title, "Kept");
     thread_->request_stop();
     EXPECT_TRUE(thread_->wait_ended(std::chrono::steady_clock::now() + std::chrono::seconds(60)));
 }

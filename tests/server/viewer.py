@@ -17,8 +17,12 @@ class Server:
 
     def __init__(self, embody: str, database: str, scene: str):
         self.home = tempfile.TemporaryDirectory()
-        words = [embody, "serve", "--port", "0", "--database", database, "--scene", scene]
-        self.process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+        self.words = [embody, "serve", "--port", "0", "--database", database, "--scene", scene]
+        self.restart()
+
+    def restart(self):
+        """Starts the program, again after it has ended; on another port."""
+        self.process = subprocess.Popen(self.words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                                         env={**os.environ, "XDG_DATA_HOME": self.home.name})
         line = self.process.stdout.readline()
         assert "http://127.0.0.1:" in line, f"embody serve did not start: {line!r}"

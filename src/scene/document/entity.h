@@ -71,6 +71,7 @@ struct Entity {
     std::optional<std::array<double, 3>> color;
     double scale = 1;
     std::vector<Pin> pins;
+    bool locked = false;
 };
 
 template <>
@@ -97,6 +98,7 @@ inline constexpr auto fields_of<Entity> = std::tuple{
     saved_when_set("color", &Entity::color, "of a primitive, linear `[red, green, blue]`; null: the Studio's"),
     saved_when_set("scale", &Entity::scale, "of a model, uniform; its mass grows with the cube", {1e-4, 1e4}),
     saved_when_set("pins", &Entity::pins, "of a thing of kind `soft`, `cloth` or `rope`: where it is held"),
+    saved_when_set("locked", &Entity::locked, "whether its pose, size and existence are kept from edits by hand"),
 };
 static_assert(lists_all_members<Entity>(), "a member of Entity is in no list, or one is there twice");
 

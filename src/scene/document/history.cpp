@@ -132,12 +132,94 @@ std::vector<Change> reversed(const std::vector<Change>& changes) {
     return back;
 }
 
+ChangedThing thing_of(const Change& change) {
+    using Kind = ChangedThing::Kind;
+    if (const auto* entity = std::get_if<EntityChange>(&change))
+        return {Kind::entity, entity->after ? entity->after->index : entity->before->index};
+    if (const auto* pose = std::get_if<PoseChange>(&change)) return {Kind::entity, pose->index};
+    if (const auto* joint = std::get_if<JointChange>(&change))
+        return {Kind::joint, joint->after ? joint->after->index : joint->before->index};
+    if (const auto* action = std::get_if<ActionChange>(&change))
+        return {Kind::action, action->after ? action->after->id : action->before->id};
+    return {Kind::heading, 0};
+}
+
+// Edits of the document
+// ---------------------------------------------------------------------------------------------------------
+
+// Numbers that look random, so that no two sets of edits have the same sum (Steele et al. 2014, "Fast splittable
+// pseudorandom number generators", the output function of SplitMix64).
+std::uint64_t History::next_mark() {
+    std::uint64_t z = ++marks_ * 0x9E3779B97F4A7C15U;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31U);
+}
+
+// Acts on the catalogue are no part of the document: they neither make it unsaved nor stand in another edit's way.
+void History::note(const Edit& edit, bool is_applied) {
+    ++clock_;
+    if (edit.catalog) return;
+    applied_ = is_applied ? applied_ + edit.mark : applied_ - edit.mark;
+    acted_[edit.person] = clock_;
+}
+
+std::deque<Edit>::iterator History::last_of(PersonId person) {
+    const auto found =
+        std::find_if(done_.rbegin(), done_.rend(), [person](const Edit& edit) { return edit.person == person; });
+    return found == done_.rend() ? done_.end() : std::prev(found.base());
+}
+
+const Edit* History::undoable(PersonId person) const {
+    const auto found =
+        std::find_if(done_.rbegin(), done_.rend(), [person](const Edit& edit) { return edit.person == person; });
+    return found == done_.rend() ? nullptr : &*found;
+}
+
+const Edit* History::redoable(PersonId person) const {
+    const auto found = undone_.find(person);
+    return found == undone_.end() || found->second.empty() ? nullptr : &found->second.back();
+}
+
+bool History::others_followed(const Edit& edit) const {
+    return std::any_of(acted_.begin(), acted_.end(),
+                       [&edit](const auto& acted) { return acted.first != edit.person && acted.second > edit.time; });
+}
+
+const Edit* History::last_of_others(PersonId person, ChangedThing thing) const {
+    const auto changes_it = [&](const Edit& edit) {
+        return edit.person != person && std::any_of(edit.changes.begin(), edit.changes.end(),
+                                                    [&](const Change& change) { return thing_of(change) == thing; });
+    };
+    const auto found = std::find_if(done_.rbegin(), done_.rend(), changes_it);
+    return found == done_.rend() ? nullptr : &*found;
+}
+
+// Whether another person has done or undone an edit of a thing of `edit` since `last`.
+bool History::others_changed_since(const Edit& last, const Edit& edit) const {
+    const auto meets = [&](const Edit& other) {
+        return other.person != edit.person && other.time > last.time &&
+               std::any_of(other.changes.begin(), other.changes.end(), [&](const Change& theirs) {
+                   return std::any_of(edit.changes.begin(), edit.changes.end(),
+                                      [&](const Change& ours) { return thing_of(ours) == thing_of(theirs); });
+               });
+    };
+    return std::any_of(done_.begin(), done_.end(), meets) ||
+           std::any_of(undone_.begin(), undone_.end(), [&](const auto& undone) {
+               return std::any_of(undone.second.begin(), undone.second.end(), meets);
+           });
+}
+
 // A drag is many small edits of the same poses, or of the same entity: the first state before and the last state after
-// are kept.
+// are kept. Edits of other people in between do not end it.
 bool History::merge(Edit& edit) {
-    if (!merging_ || done_.empty() || edit.merge.empty() || done_.back().merge != edit.merge || is_saved())
-        return false;
-    std::vector<Change>& done = done_.back().changes;
+    const auto open = merging_.find(edit.person);
+    if (edit.merge.empty() || open == merging_.end() || is_saved()) return false;
+    const auto last = last_of(edit.person);
+    if (last == done_.end() || last->mark != open->second || last->merge != edit.merge) return false;
+    // Another person's edit of the same thing would be undone with the step.
+    if (others_followed(*last) && others_changed_since(*last, edit)) return false;
+    std::vector<Change>& done = last->changes;
     std::map<std::pair<std::size_t, EntityIndex>, std::size_t> places;
     for (std::size_t i = 0; i < done.size(); ++i)
         if (const auto key = merge_key(done[i])) places.emplace(*key, i);
@@ -153,53 +235,58 @@ bool History::merge(Edit& edit) {
             std::get<EntityChange>(done[same->second]).after = std::get<EntityChange>(change).after;
         }
     }
-    done_.back().next_after = edit.next_after;
+    last->next_after = edit.next_after;
+    note(*last, false);
+    last->mark = open->second = next_mark();
+    note(*last, true);
+    last->time = clock_;
     return true;
 }
 
 void History::add(Edit edit) {
-    // An undone edit can't be redone on another document; if the document on disk contained it, no state in the history
-    // is on disk any more.
-    if (saved_ > document_edits_) saved_ = -1;
-    undone_.clear();
+    undone_[edit.person].clear();
     if (merge(edit)) return;
-    if (!edit.catalog) ++document_edits_;
+    edit.mark = next_mark();
+    note(edit, true);
+    edit.time = clock_;
+    merging_[edit.person] = edit.mark;
     done_.push_back(std::move(edit));
-    merging_ = true;
-    if (done_.size() > max_edits) {
-        if (!done_.front().catalog) {
-            --document_edits_;
-            if (saved_ >= 0) --saved_;
-        }
-        done_.pop_front();
-    }
+    if (done_.size() > max_edits) done_.pop_front();
 }
 
-void History::move_back() {
-    if (!done_.back().catalog) --document_edits_;
-    undone_.push_back(std::move(done_.back()));
-    done_.pop_back();
-    merging_ = false;
+void History::move_back(PersonId person, std::vector<Change> changes) {
+    const auto edit = last_of(person);
+    note(*edit, false);
+    edit->time = clock_;
+    edit->changes = std::move(changes);
+    undone_[person].push_back(std::move(*edit));
+    done_.erase(edit);
+    merging_.erase(person);
 }
 
-void History::move_forward() {
-    if (!undone_.back().catalog) ++document_edits_;
-    done_.push_back(std::move(undone_.back()));
-    undone_.pop_back();
-    merging_ = false;
+void History::move_forward(PersonId person, std::vector<Change> changes) {
+    std::vector<Edit>& undone = undone_[person];
+    note(undone.back(), true);
+    undone.back().time = clock_;
+    undone.back().changes = std::move(changes);
+    done_.push_back(std::move(undone.back()));
+    undone.pop_back();
+    merging_.erase(person);
 }
 
-void History::move_back(std::int64_t batch) {
-    done_.back().catalog->again = batch;
-    move_back();
+void History::move_back(PersonId person, std::int64_t batch) {
+    last_of(person)->catalog->again = batch;
+    move_back(person, std::vector<Change>());
 }
 
-void History::clear() {
-    done_.clear();
-    undone_.clear();
-    document_edits_ = 0;
-    saved_ = 0;
-    merging_ = false;
+void History::drop_undoable(PersonId person) { done_.erase(last_of(person)); }
+void History::drop_redoable(PersonId person) { undone_[person].pop_back(); }
+
+void History::mark_saved() {
+    saved_ = applied_;
+    merging_.clear();
 }
+
+void History::clear() { *this = {}; }
 
 }  // namespace embody::scene

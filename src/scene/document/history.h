@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,6 +44,9 @@ struct CatalogStep {
     std::int64_t again = 0;  ///< after undo: the batch that redo reverts
 };
 
+/// Number of a person who edits; 0: the program itself.
+using PersonId = std::uint32_t;
+
 /// One step of undo: changes of the document, or an act on the catalogue.
 struct Edit {
     std::string label;            ///< for people: "Move chair"
@@ -49,7 +54,18 @@ struct Edit {
     std::vector<Change> changes;  ///< in order
     EntityIndex next_before = 0, next_after = 0;  ///< the document's next_index
     std::optional<CatalogStep> catalog = {};      ///< such an edit has no changes
+    PersonId person = 0;
+    std::uint64_t mark = 0;  ///< given by the history: tells this state of the edit from all others
+    std::uint64_t time = 0;  ///< given by the history: when it was done or undone
 };
+
+/// The thing that a change is about: an entity, a joint, an action or the heading (number 0).
+struct ChangedThing {
+    enum class Kind : std::uint8_t { entity, joint, action, heading } kind = Kind::entity;
+    std::uint32_t number = 0;
+    friend bool operator==(const ChangedThing&, const ChangedThing&) = default;
+};
+ChangedThing thing_of(const Change& change);
 
 /// An edit of an entity's fields other than its geometry.
 EntityChange change_of(const Entity& before, const Entity& after);
@@ -61,40 +77,51 @@ std::vector<Change> reversed(const std::vector<Change>& changes);
 /// The change that reverts `change`.
 Change reversed(const Change& change);
 
-/// The edits that were done and those that were undone.
+/// The edits that were done and those that were undone. Each person undoes and redoes their own.
 class History {
 public:
     void add(Edit edit);
-    /// The edit that undo would revert; null where there is none.
-    [[nodiscard]] const Edit* undoable() const { return done_.empty() ? nullptr : &done_.back(); }
-    [[nodiscard]] const Edit* redoable() const { return undone_.empty() ? nullptr : &undone_.back(); }
-    /// Call after the edit was undone or redone.
-    void move_back();
-    void move_forward();
+    /// The person's edit that undo would revert; null where there is none.
+    [[nodiscard]] const Edit* undoable(PersonId person) const;
+    [[nodiscard]] const Edit* redoable(PersonId person) const;
+    /// Whether somebody else did, undid or redid an edit of the document after this one of the lists: then it must be
+    /// rebased on the document as it is.
+    [[nodiscard]] bool others_followed(const Edit& edit) const;
+    /// The last done edit of another person that changed the thing; null where there is none.
+    [[nodiscard]] const Edit* last_of_others(PersonId person, ChangedThing thing) const;
+    /// Call after the person's edit was undone or redone, with the edit's changes as they are now: those that undo
+    /// reverted, or those that redo made.
+    void move_back(PersonId person, std::vector<Change> changes);
+    void move_forward(PersonId person, std::vector<Change> changes);
     void clear();
 
-    /// Call after the edit, an act on the catalogue, was undone by this batch.
-    void move_back(std::int64_t batch);
+    /// Call after the person's edit, an act on the catalogue, was undone by this batch.
+    void move_back(PersonId person, std::int64_t batch);
     /// Removes the edit that is next for undo, or redo, since it can't be carried out any more.
-    void drop_undoable() { done_.pop_back(); }
-    void drop_redoable() { undone_.pop_back(); }
+    void drop_undoable(PersonId person);
+    void drop_redoable(PersonId person);
 
     /// The document as it is now is on disk.
-    void mark_saved() {
-        saved_ = document_edits_;
-        merging_ = false;
-    }
-    [[nodiscard]] bool is_saved() const { return saved_ == document_edits_; }
+    void mark_saved();
+    [[nodiscard]] bool is_saved() const { return saved_ == applied_; }
     /// No state of the document is on disk, whatever is undone.
-    void mark_unsaved() { saved_ = -1; }
+    void mark_unsaved() { saved_.reset(); }
 
 private:
     bool merge(Edit& edit);
+    [[nodiscard]] bool others_changed_since(const Edit& last, const Edit& edit) const;
+    [[nodiscard]] std::uint64_t next_mark();
+    void note(const Edit& edit, bool is_applied);
+    [[nodiscard]] std::deque<Edit>::iterator last_of(PersonId person);
 
-    std::deque<Edit> done_, undone_;
-    std::ptrdiff_t document_edits_ = 0;  ///< number of done edits of the document; acts on the catalogue are left out
-    std::ptrdiff_t saved_ = 0;           ///< their number when it was saved; -1: never again
-    bool merging_ = false;               ///< the last thing that happened was an edit
+    std::deque<Edit> done_;
+    std::map<PersonId, std::vector<Edit>> undone_;
+    std::uint64_t marks_ = 0;                    ///< number given so far
+    std::uint64_t applied_ = 0;                  ///< sum of the marks of all edits that the document has in it
+    std::optional<std::uint64_t> saved_ = 0;     ///< the sum when it was saved; empty: never again
+    std::uint64_t clock_ = 0;                    ///< counts edits, undos and redos
+    std::map<PersonId, std::uint64_t> acted_;    ///< when each person last changed the document
+    std::map<PersonId, std::uint64_t> merging_;  ///< mark of each person's edit that the next one may become a part of
 };
 
 }  // namespace embody::scene

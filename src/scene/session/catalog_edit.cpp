@@ -94,8 +94,8 @@ bool is_for_ever(const Error& error) { return error.where.starts_with("batch ");
 }  // namespace
 
 std::string acting_session(const SessionState& state) {
-    const auto name = state.client_names.find(state.client);
-    if (name != state.client_names.end()) return "studio: " + name->second;
+    const auto client = state.people.clients().find(state.client);
+    if (client != state.people.clients().end() && !client->second.name.empty()) return "studio: " + client->second.name;
     return "studio " + std::to_string(state.client);
 }
 
@@ -122,16 +122,16 @@ Result<ChangeReport> change_models(SessionState& state, const catalog::Catalog::
 Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
     // The batch of the next undo or redo is reverted as that undo or redo. Another batch is reverted by a new edit:
     // edits before it keep their order, and undo reaches them after the new edit itself was undone.
-    const Edit* last = state.history.undoable();
-    const Edit* next = state.history.redoable();
+    const Edit* last = state.history.undoable(state.person());
+    const Edit* next = state.history.redoable(state.person());
     const bool is_last = last && last->catalog && last->catalog->back == batch;
     const bool is_next = next && next->catalog && next->catalog->again == batch;
     Result<ChangeReport> report = take_back(state, batch);
     if (!report.ok() || report.value().batch == 0) return report;
     if (is_last) {
-        state.history.move_back(report.value().batch);
+        state.history.move_back(state.person(), report.value().batch);
     } else if (is_next) {
-        state.history.move_forward();
+        state.history.move_forward(state.person(), {});
     } else {
         Edit edit = state.start_edit(label_of(report.value()));
         edit.catalog = CatalogStep{report.value().batch, 0};
@@ -142,24 +142,24 @@ Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
 }
 
 Result<std::string> undo_on_catalog(SessionState& state) {
-    const Edit edit = *state.history.undoable();
+    const Edit edit = *state.history.undoable(state.person());
     const Result<ChangeReport> report = take_back(state, edit.catalog->back);
     if (report.ok())
-        state.history.move_back(report.value().batch);
+        state.history.move_back(state.person(), report.value().batch);
     else if (is_for_ever(report.error()))
-        state.history.drop_undoable();
+        state.history.drop_undoable(state.person());
     state.tell_document(json::array());
     if (!report.ok()) return report.error();
     return edit.label;
 }
 
 Result<std::string> redo_on_catalog(SessionState& state) {
-    const Edit edit = *state.history.redoable();
+    const Edit edit = *state.history.redoable(state.person());
     const Result<ChangeReport> report = take_back(state, edit.catalog->again);
     if (report.ok())
-        state.history.move_forward();
+        state.history.move_forward(state.person(), {});
     else if (is_for_ever(report.error()))
-        state.history.drop_redoable();
+        state.history.drop_redoable(state.person());
     state.tell_document(json::array());
     if (!report.ok()) return report.error();
     return edit.label;

@@ -2,71 +2,21 @@
 #include "scene/session/scene_folders.h"
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
-#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "foundation/state_hash.h"
+#include "scene/file/scene_file.h"
+#include "scene/session/file_names.h"
 
 namespace embody::scene {
 
+using nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
 
-/// Maximum length of a file's name without ".json", bytes: file systems allow 255, and a draft's name is longer.
-constexpr std::size_t max_stem_bytes = 200;
-/// Number of bytes of a longer title in the name of its autosave.
-constexpr std::size_t kept_of_long_title = 150;
 const std::string autosave_prefix = "autosave/";
 const std::string demo_prefix = "demo/";
-
-std::string utc_text(fs::file_time_type time) {
-    const auto system = std::chrono::time_point_cast<std::chrono::seconds>(time - fs::file_time_type::clock::now() +
-                                                                           std::chrono::system_clock::now());
-    const std::time_t seconds = std::chrono::system_clock::to_time_t(system);
-    std::tm parts{};
-    gmtime_r(&seconds, &parts);
-    char text[32];
-    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
-
-// Whether a file's name may contain the byte in every file system and shell.
-bool is_plain(unsigned char byte) {
-    return std::isalnum(byte) != 0 || byte >= 0x80 ||
-           std::string_view(" -_().").find(static_cast<char>(byte)) != std::string_view::npos;
-}
-
-// A name as a file's stem, the inverse of decoded(): bytes that are not plain become "%" and two digits, and so does a
-// dot at the front, which would hide the file. Different names have different stems.
-std::string encoded(const std::string& name) {
-    static constexpr char digits[] = "0123456789ABCDEF";
-    std::string stem;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (is_plain(byte) && !(c == '.' && stem.empty())) {
-            stem += c;
-        } else {
-            stem += {'%', digits[byte >> 4], digits[byte & 15]};
-        }
-    }
-    return stem;
-}
-
-std::string decoded(const std::string& stem) {
-    std::string name;
-    for (std::size_t i = 0; i < stem.size(); ++i) {
-        unsigned code = 0;
-        const char* begin = stem.data() + i + 1;
-        const bool is_code =
-            stem[i] == '%' && i + 2 < stem.size() && std::from_chars(begin, begin + 2, code, 16).ptr == begin + 2;
-        name += is_code ? static_cast<char>(code) : stem[i];
-        if (is_code) i += 2;
-    }
-    return name;
-}
 
 // A stem made by a person may be one that encoded() never makes, such as "50% off" or "a:b".
 bool is_stem(const std::string& name) {
@@ -168,37 +118,94 @@ Result<fs::path> saved_file(const SessionOptions& options, const std::string& na
         "shorten it: at most " + std::to_string(max_stem_bytes) + " letters; signs such as / and : count as three"};
 }
 
-fs::path autosave_file(const SessionOptions& options, const std::string& name) {
-    const fs::path folder = options.saved_scenes / "autosave";
-    fs::path file = file_in(folder, name);
-    const std::string stem = file.stem().string();
-    if (stem.size() <= max_stem_bytes) return file;
-    // A title may be of any length: the stem has its beginning, up to a whole character, and a part that tells it from
-    // others. encoded() never makes a "%~".
-    std::size_t kept = kept_of_long_title;
-    while ((static_cast<unsigned char>(stem[kept]) & 0xC0) == 0x80) --kept;
-    StateHash hash;
-    hash.add_bytes(stem.data(), stem.size());
-    return folder / (stem.substr(0, kept) + "%~" + std::to_string(hash.value()) + ".json");
-}
-
 std::string name_of_scene(const fs::path& file) { return name_in(file); }
 
-std::vector<ListedScene> list_scenes(const SessionOptions& options) {
-    std::vector<ListedScene> scenes = list_folder(options.saved_scenes, "saved", "");
-    for (ListedScene& scene : list_folder(options.saved_scenes / "autosave", "recovery", autosave_prefix))
-        scenes.push_back(std::move(scene));
-    for (ListedScene& scene : list_folder(options.demo_scenes, "demo", "")) scenes.push_back(std::move(scene));
-    return scenes;
+// Recoveries
+// -----------------------------------------------------------------------------------------------------------
+
+fs::path recovery_folder(const SessionOptions& options) { return options.saved_scenes / "autosave"; }
+
+json recoveries_to_json(const SessionOptions& options) {
+    json rows = json::array();
+    for (const Recovery& recovery : list_recoveries(recovery_folder(options)))
+        rows.push_back({{"name", autosave_prefix + recovery.file.stem().string()},
+                        {"title", recovery.title},
+                        {"kind", "recovery"},
+                        {"modified", recovery.modified},
+                        {"edits", recovery.edits},
+                        {"scene", recovery.scene}});
+    // Autosaves of versions of Embody before the journal.
+    for (const ListedScene& scene : list_folder(recovery_folder(options), "recovery", autosave_prefix))
+        rows.push_back({{"name", scene.name},
+                        {"title", scene.title},
+                        {"kind", scene.kind},
+                        {"modified", scene.modified},
+                        {"edits", nullptr},
+                        {"scene", scene.name.substr(autosave_prefix.size())}});
+    return rows;
+}
+
+Result<fs::path> recovery_file(const SessionOptions& options, const std::string& name) {
+    if (is_recovery(name)) {
+        const std::string stem = name.substr(autosave_prefix.size());
+        for (const Recovery& recovery : list_recoveries(recovery_folder(options)))
+            if (recovery.file.stem() == stem) return recovery.file;
+        if (const fs::path file = file_in(recovery_folder(options), stem); is_file(file)) return file;
+    }
+    return Error{"name", "there is no recovered scene \"" + name + "\"", "scene.list names them all"};
+}
+
+Result<Recovered> read_recovery(const fs::path& file) {
+    if (file.extension() != ".json") return read_journal(file);
+    Result<Document> document = load_document(file);
+    if (!document.ok()) return document.error();
+    return Recovered{std::move(document).value(), name_in(file)};
+}
+
+bool is_recovery(const std::string& name) { return name.starts_with(autosave_prefix); }
+
+// Versions
+// -------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+fs::path version_folder(const SessionOptions& options, const std::string& scene) {
+    return options.saved_scenes / "versions" / encoded(scene);
+}
+
+}  // namespace
+
+Result<fs::path> version_file(const SessionOptions& options, const std::string& scene, const std::string& version) {
+    fs::path file = version_folder(options, scene) / (encoded(version) + ".json");
+    if (version.empty() || file.stem().string().size() > max_stem_bytes)
+        return Error{"version", "must be a name of 1 … " + std::to_string(max_stem_bytes) + " letters"};
+    return file;
+}
+
+std::vector<ListedScene> list_versions(const SessionOptions& options, const std::string& scene) {
+    return list_folder(version_folder(options, scene), "version", "");
+}
+
+// Scenes
+// ---------------------------------------------------------------------------------------------------------------
+
+json scenes_to_json(const SessionOptions& options) {
+    json rows = json::array();
+    const auto add = [&rows](const std::vector<ListedScene>& scenes) {
+        for (const ListedScene& scene : scenes)
+            rows.push_back(
+                {{"name", scene.name}, {"title", scene.title}, {"kind", scene.kind}, {"modified", scene.modified}});
+    };
+    add(list_folder(options.saved_scenes, "saved", ""));
+    for (json& recovery : recoveries_to_json(options)) rows.push_back(std::move(recovery));
+    add(list_folder(options.demo_scenes, "demo", ""));
+    return rows;
 }
 
 Result<fs::path> find_scene(const SessionOptions& options, const std::string& name) {
-    const auto after = [&name](const std::string& prefix) { return name.substr(prefix.size()); };
     std::vector<fs::path> places;
-    if (name.starts_with(autosave_prefix)) {
-        places = {autosave_file(options, after(autosave_prefix))};
-    } else if (name.starts_with(demo_prefix)) {
-        places = {file_in(options.demo_scenes, after(demo_prefix))};
+    if (name.starts_with(demo_prefix)) {
+        places = {file_in(options.demo_scenes, name.substr(demo_prefix.size()))};
     } else {
         places = {file_in(options.saved_scenes, name), file_in(options.demo_scenes, name)};
     }

@@ -22,8 +22,8 @@ const std::map<std::string, const Command*>& command_table() {
     static const std::map<std::string, const Command*> table = [] {
         std::map<std::string, const Command*> built;
         for (const auto family :
-             {catalog_commands(), catalog_change_commands(), scene_commands(), entity_commands(), placement_commands(),
-              attribute_commands(), joint_and_action_commands(), simulation_commands()})
+             {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(), entity_commands(),
+              placement_commands(), attribute_commands(), joint_and_action_commands(), simulation_commands()})
             for (const Command& command : family) built[command.name] = &command;
         return built;
     }();
@@ -67,7 +67,13 @@ Result<json> Session::execute(const std::string& command, const json& params, Cl
     return found->second->execute(*state_, params.is_null() ? nothing : params);
 }
 
-void Session::forget_client(ClientId client) { state_->client_names.erase(client); }
+void Session::forget_client(ClientId client) {
+    if (!state_->people.leave(client)) return;
+    state_->tell({{"event", "members"}, {"members", state_->people.members()}});
+    scene::follow_question(*state_, std::chrono::steady_clock::now());
+}
+
+void Session::follow_question(std::chrono::steady_clock::time_point now) { scene::follow_question(*state_, now); }
 
 bool Session::follow_catalog() { return follow_changes_of_others(*state_); }
 
@@ -121,27 +127,6 @@ json Session::statistics() const {
             {"contacts", report.contacts},
             {"step_ms", report.milliseconds},
             {"real_time_factor", factor}};
-}
-
-Result<void> Session::autosave() {
-    SessionState& state = *state_;
-    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
-    const std::string name = state.name.empty() ? state.document.title : state.name;
-    if (Result<void> written = save_document(state.document, autosave_file(state.options, name)); !written.ok())
-        return written;
-    state.mark_autosaved();
-    return {};
-}
-
-Result<void> Session::rescue() {
-    SessionState& state = *state_;
-    std::unique_lock lock(state.rescue_mutex);
-    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
-    Document document = state.document;
-    if (state.changes_in_hand) apply_changes(document, reversed(*state.changes_in_hand));
-    const std::string name = state.name.empty() ? document.title : state.name;
-    lock.unlock();
-    return save_document(document, autosave_file(state.options, name));
 }
 
 }  // namespace embody::scene

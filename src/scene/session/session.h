@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "catalog/catalog.h"
@@ -18,11 +20,16 @@
 
 namespace embody::scene {
 
-/// What a client must be told after a command or a step, as the protocol's events.
+/// Number of a connection, unique while the program runs; 0: the program itself.
+using ClientId = std::uint64_t;
+
+/// What clients must be told after a command or a step, as the protocol's events.
 struct Events {
     std::vector<nlohmann::json> messages;  ///< in order, for every client
-    bool all_poses = false;                ///< send every entity's pose again
-    std::size_t actions = 0;               ///< number carried out; of very many the later ones have no message
+    /// In order, each for one client, who is sent them after the messages for every client.
+    std::vector<std::pair<ClientId, nlohmann::json>> directed;
+    bool all_poses = false;   ///< send every entity's pose again
+    std::size_t actions = 0;  ///< number carried out; of very many the later ones have no message
 };
 
 /// One entity's state for a state frame.
@@ -33,11 +40,9 @@ struct EntityState {
     const MovingPoints* points = nullptr;  ///< of an entity that is not one body; valid until the next command or step
 };
 
-/// Number of a connection, unique while the program runs; 0: the program itself.
-using ClientId = std::uint64_t;
-
 struct SessionOptions {
-    std::filesystem::path saved_scenes;      ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
+    std::filesystem::path
+        saved_scenes;  ///< folder of the user's scenes; journals go to its sub-folder "autosave". Empty: none is kept
     std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
     std::function<bool()> stop_wanted = {};  ///< called between the steps of simulation.step; true ends it early
     /// Called at intervals with the progress of the running command; false ends it, and nothing is changed. May be
@@ -57,6 +62,8 @@ public:
     Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params, ClientId client = 0);
     /// A client has left.
     void forget_client(ClientId client);
+    /// Opens the scene that members were asked about, once their time to answer is over; for a timer.
+    void follow_question(std::chrono::steady_clock::time_point now);
     /// Applies other programs' changes of the catalogue, and returns whether there were any; for a timer.
     bool follow_catalog();
     /// Events since the last call.
@@ -75,11 +82,6 @@ public:
     [[nodiscard]] std::uint64_t simulated_steps() const;
     /// The `statistics` event.
     [[nodiscard]] nlohmann::json statistics() const;
-    /// Writes the document beside the saved scenes if it changed since the last call; for a timer.
-    Result<void> autosave();
-    /// The same from another thread, while a command or step hangs: the document as it was before it, if it is not on
-    /// disk.
-    Result<void> rescue();
 
 private:
     Session();

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/form.h"
-#include "scene/file/json/fields_json.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
 #include "scene/session/session_state.h"
@@ -50,6 +49,10 @@ const char* state_name(PlayState state) {
 }  // namespace
 
 void SessionState::tell(json message) { events.messages.push_back(std::move(message)); }
+
+void SessionState::tell_to(ClientId recipient, json message) {
+    events.directed.emplace_back(recipient, std::move(message));
+}
 
 json SessionState::simulation_json() const {
     const physics::StepReport& report = simulation->world().last_report();
@@ -109,48 +112,30 @@ void SessionState::tell_message(const char* level, std::string text) {
 }
 
 void SessionState::tell_document(json changes) {
-    {
-        const std::lock_guard lock(rescue_mutex);
-        ++revision;
-    }
-    const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
     tell({{"event", "document"},
-          {"revision", revision},
+          {"revision", ++revision},
           {"changes", std::move(changes)},
-          {"undo", label(history.undoable())},
-          {"redo", label(history.redoable())},
           {"unsaved", !history.is_saved()},
           {"name", name}});
+    tell_histories();
     tell_notes();
+}
+
+void SessionState::tell_histories() {
+    const auto label = [](const Edit* edit) { return edit ? std::optional(edit->label) : std::nullopt; };
+    const auto value = [](const std::optional<std::string>& text) { return text ? json(*text) : json(nullptr); };
+    for (auto& [id, told] : people.clients()) {
+        const auto undo = label(history.undoable(told.person)), redo = label(history.redoable(told.person));
+        if (!told.is_greeted || (told.undo == undo && told.redo == redo)) continue;
+        told.undo = undo;
+        told.redo = redo;
+        tell_to(id, {{"event", "history"}, {"undo", value(undo)}, {"redo", value(redo)}});
+    }
 }
 
 void SessionState::tell_notes() {
     for (const std::string& note : simulation->notes())
         if (told_notes.insert(note).second) tell_message("warning", note);
-}
-
-json SessionState::change_json(const Change& change) const {
-    if (const auto* entity = std::get_if<EntityChange>(&change)) {
-        if (!entity->after) return {{"op", "entity_removed"}, {"index", entity->before->index}};
-        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(entity->after->index))}};
-    }
-    if (const auto* pose = std::get_if<PoseChange>(&change))
-        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(pose->index))}};
-    if (const auto* joint = std::get_if<JointChange>(&change)) {
-        if (!joint->after) return {{"op", "joint_removed"}, {"index", joint->before->index}};
-        return {{"op", "joint"}, {"joint", joint_to_json(*joint->after)}};
-    }
-    if (const auto* action = std::get_if<ActionChange>(&change)) {
-        if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
-        return {{"op", "action"}, {"action", action_to_json(*action->after)}};
-    }
-    // The heading's fields with those of its settings beside them, as scene.settings reads them.
-    json heading = json::object();
-    write_all_fields<Heading>(heading, document);
-    json settings = std::move(heading["settings"]);
-    heading.erase("settings");
-    settings.update(heading);
-    return {{"op", "settings"}, {"settings", std::move(settings)}};
 }
 
 }  // namespace embody::scene

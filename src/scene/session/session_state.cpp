@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/physical_kind.h"
+#include "scene/file/json/change_json.h"
 #include "scene/file/scene_file.h"
 #include "scene/session/catalog_edit.h"
 
@@ -28,6 +29,7 @@ Document new_document(const std::string& title) {
     floor.pose.position = {0, -0.25, 0};
     floor.attributes["kind"] = to_value(attributes::PhysicalKind::static_body);
     floor.color = {0.5, 0.5, 0.48};
+    floor.locked = true;
     document.entities.push_back(std::move(floor));
     document.camera = {Vec3{4, 3, 6}, Vec3{0, 0.5, 0}};
     return document;
@@ -117,11 +119,9 @@ Result<void> SessionState::sync(const Change& change) {
     return simulation->set_velocity(pose.index, {}, {});
 }
 
-void SessionState::put_in_document(const std::vector<Change>& changes, bool is_in_hand) {
-    const std::lock_guard lock(rescue_mutex);
+void SessionState::put_in_document(const std::vector<Change>& changes) {
     apply_changes(document, changes);
     lookup.apply(changes);
-    changes_in_hand = is_in_hand ? &changes : nullptr;
 }
 
 // Removes entities that go in a row from the simulation together; returns their number.
@@ -140,7 +140,7 @@ std::size_t SessionState::sync_removals(std::span<const Change> changes) {
 
 // Applies all changes or none.
 Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
-    put_in_document(changes, true);
+    put_in_document(changes);
     std::size_t synced = 0;
     Result<void> done;
     try {
@@ -150,15 +150,11 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
             if (done.ok()) synced += std::max<std::size_t>(gone, 1);
         }
     } catch (...) {
-        put_in_document(reversed(changes), false);
+        put_in_document(reversed(changes));
         throw;
     }
-    if (done.ok()) {
-        const std::lock_guard lock(rescue_mutex);
-        changes_in_hand = nullptr;
-        return done;
-    }
-    put_in_document(reversed(changes), false);
+    if (done.ok()) return done;
+    put_in_document(reversed(changes));
     // The change that failed has changed nothing in the simulation.
     while (synced-- > 0) (void)sync(reversed(changes[synced])).ok();
     if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
@@ -169,15 +165,11 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
 Result<void> SessionState::force_changes(const std::vector<Change>& changes) {
     Result<void> done = run_changes(changes);
     if (done.ok() || play_state == PlayState::stopped) return done;
-    put_in_document(changes, true);
+    put_in_document(changes);
     Result<void> made = rebuild_simulation();
     if (!made.ok()) {
-        put_in_document(reversed(changes), false);
+        put_in_document(reversed(changes));
         return made;
-    }
-    {
-        const std::lock_guard lock(rescue_mutex);
-        changes_in_hand = nullptr;
     }
     tell_message("warning", "The running simulation could not follow and was reset: " + done.error().message());
     set_play_state(PlayState::stopped);
@@ -185,15 +177,15 @@ Result<void> SessionState::force_changes(const std::vector<Change>& changes) {
     return {};
 }
 
-Edit SessionState::start_edit(std::string label) const {
+Edit SessionState::start_edit(std::string label) {
     Edit edit;
+    edit.person = person();
     edit.label = std::move(label);
     edit.next_before = edit.next_after = document.next_index;
     return edit;
 }
 
 void SessionState::record(Edit edit) {
-    const std::lock_guard lock(rescue_mutex);
     document.next_index = edit.next_after;
     history.add(std::move(edit));
 }
@@ -201,58 +193,68 @@ void SessionState::record(Edit edit) {
 Result<void> SessionState::commit(Edit edit) {
     if (edit.changes.empty()) return {};
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
-    json changes = json::array();
-    for (const Change& change : edit.changes) changes.push_back(change_json(change));
+    json told = told_changes(edit.changes);
     record(std::move(edit));
-    tell_document(std::move(changes));
+    keep_and_tell(std::move(told));
     return {};
 }
 
+Result<std::vector<Change>> SessionState::step_changes(const Edit& edit, std::vector<Change> recorded) {
+    if (!history.others_followed(edit)) return recorded;
+    Rebased now = rebased(recorded, document, lookup);
+    if (!now.conflict) return std::move(now.changes);
+    const ChangedThing thing = now.conflict->thing;
+    const Edit* other = history.last_of_others(edit.person, thing);
+    std::string what = thing.kind == ChangedThing::Kind::entity   ? called({thing.number})
+                       : thing.kind == ChangedThing::Kind::joint  ? "joint " + std::to_string(thing.number)
+                       : thing.kind == ChangedThing::Kind::action ? "action " + std::to_string(thing.number)
+                                                                  : "the scene";
+    return Error{edit.label,
+                 what + ": " + now.conflict->why + (other ? " by " + people.person_called(other->person) : ""),
+                 "change it by hand, or have the later change undone first"};
+}
+
 Result<std::string> SessionState::undo() {
-    const Edit* edit = history.undoable();
+    const Edit* edit = history.undoable(person());
     if (!edit) return std::string();
     if (edit->catalog) return undo_on_catalog(*this);
-    const std::vector<Change> back = reversed(edit->changes);
-    if (Result<void> done = force_changes(back); !done.ok()) return done.error();
+    Result<std::vector<Change>> changes = step_changes(*edit, reversed(edit->changes));
+    if (!changes.ok()) return changes.error();
+    if (Result<void> done = force_changes(changes.value()); !done.ok()) return done.error();
     std::string label = edit->label;
-    {
-        const std::lock_guard lock(rescue_mutex);
+    // While somebody else is here, an index that was used is not used again: redo needs it.
+    if (document.next_index == edit->next_after && people.others(client).empty())
         document.next_index = edit->next_before;
-        history.move_back();
-    }
-    json changes = json::array();
-    for (const Change& change : back) changes.push_back(change_json(change));
-    tell_document(std::move(changes));
+    history.move_back(edit->person, reversed(changes.value()));
+    keep_and_tell(told_changes(changes.value()));
     return label;
 }
 
 Result<std::string> SessionState::redo() {
-    const Edit* edit = history.redoable();
+    const Edit* edit = history.redoable(person());
     if (!edit) return std::string();
     if (edit->catalog) return redo_on_catalog(*this);
-    if (Result<void> done = force_changes(edit->changes); !done.ok()) return done.error();
+    Result<std::vector<Change>> changes = step_changes(*edit, edit->changes);
+    if (!changes.ok()) return changes.error();
+    if (Result<void> done = force_changes(changes.value()); !done.ok()) return done.error();
     std::string label = edit->label;
-    json changes = json::array();
-    for (const Change& change : edit->changes) changes.push_back(change_json(change));
-    {
-        const std::lock_guard lock(rescue_mutex);
-        document.next_index = edit->next_after;
-        history.move_forward();
-    }
-    tell_document(std::move(changes));
+    document.next_index = std::max(document.next_index, edit->next_after);
+    json told = told_changes(changes.value());
+    history.move_forward(edit->person, std::move(changes).value());
+    keep_and_tell(std::move(told));
     return label;
 }
 
-Result<void> SessionState::open(Document opened, std::string opened_name) {
+Result<void> SessionState::open(Document opened, std::string opened_name, bool is_unsaved) {
     Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms);
     if (!made.ok()) return made.error();
-    {
-        const std::lock_guard lock(rescue_mutex);
-        std::swap(document, opened);
-        lookup.assign(document);
-        name = std::move(opened_name);
-        history.clear();
-    }
+    // Where the old document was saved its journal has gone already; else it becomes a recovery.
+    journal.reset();
+    std::swap(document, opened);
+    lookup.assign(document);
+    name = std::move(opened_name);
+    history.clear();
+    if (is_unsaved) history.mark_unsaved();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
     grab.reset();
@@ -261,20 +263,74 @@ Result<void> SessionState::open(Document opened, std::string opened_name) {
     told_notes.clear();
     play_state = PlayState::stopped;
     step_times.clear();
-    tell_document(json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}}));
+    const json changes = json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}});
+    if (is_unsaved) keep(changes);
+    tell_document(changes);
     tell(simulation_event());
     events.all_poses = true;
-    mark_autosaved();
     return {};
 }
 
-void SessionState::mark_autosaved() {
-    const std::lock_guard lock(rescue_mutex);
-    autosaved_revision = revision;
+// Journal
+// --------------------------------------------------------------------------------------------------------------
+
+std::filesystem::path SessionState::journal_folder() const {
+    return options.saved_scenes.empty() ? std::filesystem::path() : options.saved_scenes / "autosave";
+}
+
+json SessionState::told_changes(const std::vector<Change>& changes) const {
+    json told = json::array();
+    for (const Change& change : changes) told.push_back(change_to_json(change, document));
+    return told;
+}
+
+void SessionState::keep_and_tell(json changes) {
+    keep(changes);
+    tell_document(std::move(changes));
+}
+
+void SessionState::keep(const json& changes) {
+    if (journal_folder().empty()) return;
+    // Undo led back to what is on disk.
+    if (history.is_saved()) return mark_saved();
+    Result<void> kept;
+    if (journal) {
+        kept = journal->add(changes, document);
+    } else {
+        Result<std::unique_ptr<Journal>> begun = Journal::begin(journal_folder(), name, document);
+        if (begun.ok())
+            journal = std::move(begun).value();
+        else
+            kept = begun.error();
+    }
+    if (kept.ok()) {
+        journal_failure_told = false;
+        return;
+    }
+    // The next edit begins a new one, in which all is written.
+    if (journal) journal->remove();
+    journal.reset();
+    if (!std::exchange(journal_failure_told, true))
+        tell_message("error", "Edits are not kept on disk: " + kept.error().message());
+}
+
+void SessionState::mark_saved() {
+    history.mark_saved();
+    if (journal) journal->remove();
+    journal.reset();
 }
 
 // Names
 // ----------------------------------------------------------------------------------------------------------------
+
+Result<void> SessionState::check_unlocked(const std::vector<EntityIndex>& indices) const {
+    for (const EntityIndex index : indices) {
+        const Entity* entity = document.find(index);
+        if (!entity || !entity->locked) continue;
+        return Error{"entity " + std::to_string(index), called({index}) + " is locked", "unlock it first"};
+    }
+    return {};
+}
 
 Result<const Entity*> SessionState::entity(EntityIndex index, const std::string& where) const {
     if (const Entity* found = document.find(index)) return found;

@@ -3,9 +3,7 @@
 
 #include <chrono>
 #include <deque>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -15,7 +13,11 @@
 
 #include "scene/document/document_index.h"
 #include "scene/document/history.h"
+#include "scene/document/rebase.h"
 #include "scene/embody/entity_definitions.h"
+#include "scene/session/journal.h"
+#include "scene/session/opening.h"
+#include "scene/session/people.h"
 #include "scene/session/session.h"
 #include "scene/simulation/grab.h"
 #include "scene/simulation/simulation.h"
@@ -34,17 +36,13 @@ struct SessionState {
     std::shared_ptr<FormCache> forms = std::make_shared<FormCache>();  ///< of all simulations of this session
     EntityDefinitions definitions;
 
-    /// Locked while the document, its name, revisions and history change: another thread may read them to save unsaved
-    /// work. Never locked for long.
-    std::mutex rescue_mutex;
-    const std::vector<Change>* changes_in_hand = nullptr;  ///< in the document but not in the simulation yet
-
     Document document;
     DocumentIndex lookup;  ///< of the document
     std::string name;      ///< of the file; empty: not saved yet
     std::uint64_t revision = 0;
-    std::uint64_t autosaved_revision = 0;
     History history;
+    std::unique_ptr<Journal> journal;  ///< of the unsaved edits; null where there are none
+    bool journal_failure_told = false;
 
     /// Never null: while stopped it holds the document's poses, for picking and placing.
     std::unique_ptr<Simulation> simulation;
@@ -58,35 +56,47 @@ struct SessionState {
 
     Events events;
 
-    ClientId client = 0;                           ///< whose command is being executed
-    std::map<ClientId, std::string> client_names;  ///< of clients that sent their name
+    ClientId client = 0;  ///< whose command is being executed
+    People people;
+    std::optional<Question> question;  ///< what members are being asked
+    std::uint64_t last_question = 0;
 
     /// Applies the edit to document and simulation and tells clients. On failure nothing has changed.
     Result<void> commit(Edit edit);
     /// Adds an edit that was done to the history.
     void record(Edit edit);
-    /// The label of the edit that was undone or redone; empty: there was none.
+    /// The person whose command is being executed.
+    [[nodiscard]] PersonId person() { return people.client(client).person; }
+    /// The label of the person's edit that was undone or redone; empty: there was none.
     Result<std::string> undo();
     Result<std::string> redo();
     /// An edit with the document's present next_index in it.
-    [[nodiscard]] Edit start_edit(std::string label) const;
+    [[nodiscard]] Edit start_edit(std::string label);
 
     /// The document as it is now is on disk.
-    void mark_autosaved();
+    void mark_saved();
+    /// The folder of journals; empty where no scenes are saved.
+    [[nodiscard]] std::filesystem::path journal_folder() const;
 
-    /// Opens another document, without history. On failure the old one stays.
-    Result<void> open(Document opened, std::string opened_name);
+    /// Opens another document, without history. On failure the old one stays. Unsaved work of the old one stays in its
+    /// journal, as a recovery.
+    Result<void> open(Document opened, std::string opened_name, bool is_unsaved = false);
     /// A new simulation of the document.
     Result<void> rebuild_simulation();
     void set_play_state(PlayState state);
     void step();
 
     void tell(nlohmann::json message);
+    void tell_to(ClientId recipient, nlohmann::json message);  ///< tells one client only
     void tell_message(const char* level, std::string text);
     void tell_document(nlohmann::json changes);
+    /// Tells each client that has said hello what its person can undo and redo now, where that has changed.
+    void tell_histories();
     [[nodiscard]] nlohmann::json simulation_json() const;
     [[nodiscard]] nlohmann::json simulation_event() const;
 
+    /// An error that names the first locked one of these entities.
+    Result<void> check_unlocked(const std::vector<EntityIndex>& indices) const;
     /// The document's entity, or an error that names the field.
     Result<const Entity*> entity(EntityIndex index, const std::string& where) const;
     /// The entity's name for a label, or "3 entities".
@@ -97,12 +107,18 @@ private:
     std::size_t sync_removals(std::span<const Change> changes);
     Result<void> sync_entity(const EntityChange& change);
     Result<void> sync_heading(const HeadingChange& change);
-    void put_in_document(const std::vector<Change>& changes, bool is_in_hand);
+    void put_in_document(const std::vector<Change>& changes);
     Result<void> run_changes(const std::vector<Change>& changes);
     Result<void> force_changes(const std::vector<Change>& changes);
+    /// What a step of undo or redo changes in the document as it is.
+    Result<std::vector<Change>> step_changes(const Edit& edit, std::vector<Change> recorded);
+    /// Changes that the document has in it, for clients and the journal.
+    [[nodiscard]] nlohmann::json told_changes(const std::vector<Change>& changes) const;
+    void keep_and_tell(nlohmann::json changes);
+    /// Appends an edit to the journal.
+    void keep(const nlohmann::json& changes);
     void tell_step();
     void tell_notes();
-    [[nodiscard]] nlohmann::json change_json(const Change& change) const;
 };
 
 /// The document that scene.new makes: a floor to put things on.

@@ -138,6 +138,8 @@ export interface Entity {
   scale?: number;
   /** of a thing of kind `soft`, `cloth` or `rope`: where it is held */
   pins?: Pin[];
+  /** whether its pose, size and existence are kept from edits by hand */
+  locked?: boolean;
 }
 
 export interface JointLimit {

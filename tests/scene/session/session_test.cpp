@@ -17,6 +17,7 @@
 #include "foundation/random.h"
 #include "scene/file/scene_file.h"
 #include "scene/sample_documents.h"
+#include "scene/session/session_fixture.h"
 #include "scene/session/session_state.h"
 
 namespace embody::scene {
@@ -24,54 +25,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-class SessionTest : public testing::Test {
-protected:
-    SessionTest() {
-        std::string name = (fs::temp_directory_path() / "embody_session_XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-        session_ = make();
-    }
-    ~SessionTest() override { fs::remove_all(folder_); }
-
-    std::unique_ptr<Session> make() {
-        auto made = Session::create(nullptr, {folder_ / "saved", folder_ / "demo"});
-        if (!made.ok()) {
-            ADD_FAILURE() << made.error().message();
-            return nullptr;
-        }
-        return std::move(made).value();
-    }
-    json run(const std::string& command, const json& params = json::object()) {
-        auto result = session_->execute(command, params);
-        if (!result.ok()) {
-            ADD_FAILURE() << command << " " << params.dump() << ": " << result.error().message();
-            return {};
-        }
-        return result.value();
-    }
-    std::string error_of(const std::string& command, const json& params = json::object()) {
-        const auto result = session_->execute(command, params);
-        return result.ok() ? "accepted" : result.error().message();
-    }
-    EntityIndex add_box(Vec3 position, double half = 0.25) {
-        return run("entity.add", {{"entity",
-                                   {{"shape", {{"type", "box"}, {"half_extents", {half, half, half}}}},
-                                    {"pose", {{"position", {position.x, position.y, position.z}}}}}}})["index"];
-    }
-    json document() { return document_to_json(session_->document()); }
-    Vec3 where(EntityIndex index) {
-        std::vector<EntityState> states;
-        session_->read_states(states);
-        for (const EntityState& state : states)
-            if (state.entity == index) return state.pose.position;
-        ADD_FAILURE() << "entity " << index << " is not in the world";
-        return {};
-    }
-
-    fs::path folder_;
-    std::unique_ptr<Session> session_;
-};
 
 TEST_F(SessionTest, RefusesWrongCommandsByName) {
     EXPECT_NE(error_of("entity.ad").find("did you mean \"entity.add\"?"), std::string::npos);
@@ -115,9 +68,9 @@ TEST_F(SessionTest, TellsSmallChangesAndLabels) {
     ASSERT_EQ(event["changes"].size(), 1u);
     EXPECT_EQ(event["changes"][0]["op"], "entity");
     EXPECT_EQ(event["changes"][0]["entity"]["index"], index);
-    EXPECT_EQ(event["undo"], "Add Box");
-    EXPECT_EQ(event["redo"], nullptr);
     EXPECT_EQ(event["unsaved"], true);
+    EXPECT_EQ(run("hello")["undo"], "Add Box");
+    EXPECT_EQ(run("hello")["redo"], nullptr);
 }
 
 TEST_F(SessionTest, MergesADragIntoOneUndo) {
@@ -132,59 +85,6 @@ TEST_F(SessionTest, MergesADragIntoOneUndo) {
     EXPECT_EQ(document(), before);
     EXPECT_EQ(run("edit.redo")["redone"], "Move Box");
     EXPECT_NEAR(where(index).x, 4.9, 1e-12);
-}
-
-// A random command that may be refused; most are not.
-json random_command(Random& random, const Document& document, std::string& name) {
-    const auto any_entity = [&]() -> EntityIndex {
-        return document.entities.empty() ? 1 : document.entities[random.below(document.entities.size())].index;
-    };
-    const auto any_position = [&] { return json{random.between(-5, 5), random.between(0, 5), random.between(-5, 5)}; };
-    const json box = {{"shape", {{"type", "box"}, {"half_extents", {0.2, 0.3, 0.4}}}},
-                      {"pose", {{"position", any_position()}}}};
-    switch (random.below(16)) {
-        case 0:
-        case 1:
-            return name = "entity.add", json{{"entity", box}};
-        case 2:
-            return name = "entity.add",
-                   json{{"entity", box}, {"drop", {{"origin", any_position()}, {"direction", {0.1, -1, 0.2}}}}};
-        case 3:
-            return name = "entity.remove", json{{"indices", {any_entity(), any_entity()}}};
-        case 4:
-            return name = "entity.transform",
-                   json{{"poses", {{{"index", any_entity()}, {"position", any_position()}}}}};
-        case 5:
-            return name = "entity.transform",
-                   json{{"merge", "m"}, {"poses", {{{"index", any_entity()}, {"position", any_position()}}}}};
-        case 6:
-            return name = "entity.update",
-                   json{{"index", any_entity()},
-                        {"entity", {{"name", "N"}, {"force", any_position()}, {"enabled", true}}}};
-        case 7:
-            return name = "entity.update",
-                   json{{"index", any_entity()}, {"entity", {{"shape", {{"type", "sphere"}, {"radius", 0.3}}}}}};
-        case 8:
-            return name = "entity.set_attribute",
-                   json{{"indices", {any_entity()}}, {"name", "mass"}, {"value", random.between(0.1, 9)}};
-        case 9:
-            return name = "entity.reset_attribute", json{{"indices", {any_entity()}}, {"name", "mass"}};
-        case 10:
-            return name = "entity.duplicate", json{{"indices", {any_entity()}}};
-        case 11:
-            return name = "entity.drop_to_floor", json{{"indices", {any_entity()}}};
-        case 12:
-            return name = "joint.add", json{{"type", "ball"}, {"entity_b", any_entity()}, {"anchor", any_position()}};
-        case 13:
-            return name = "action.add",
-                   json{{"trigger", {{"type", "time"}, {"time", 1}}}, {"effect", {{"type", "pause"}}}};
-        case 14:
-            return name = "scene.settings", json{{"gravity", any_position()}, {"title", "T"}};
-        default:
-            if (!document.joints.empty()) return name = "joint.remove", json{{"index", document.joints.back().index}};
-            if (!document.actions.empty()) return name = "action.remove", json{{"index", document.actions.back().id}};
-            return name = "scene.settings", json{{"substeps", 1 + random.below(8)}};
-    }
 }
 
 TEST_F(SessionTest, UndoAndRedoOfRandomEditsGiveTheIdenticalDocument) {
@@ -406,8 +306,9 @@ TEST_F(SessionTest, ActionsTellWhatTheyDid) {
 
 TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     add_box({0, 1, 0});
-    const json before = document();
     const json saved = run("scene.save", {{"name", "../My: scene?"}});
+    const json before = document();
+    EXPECT_EQ(before["title"], "../My: scene?");
     EXPECT_EQ(saved["name"], "../My: scene?");
     EXPECT_EQ(fs::path(saved["path"].get<std::string>()).parent_path(), folder_ / "saved");
     EXPECT_EQ(run("hello")["unsaved"], false);
@@ -417,8 +318,7 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     EXPECT_EQ(run("hello")["unsaved"], false) << "undone to what is on disk";
     run("edit.redo");
 
-    // An autosave is beside it until it is saved.
-    ASSERT_TRUE(session_->autosave().ok());
+    // A journal is beside it until it is saved.
     const json edited = document();
     const auto kinds = [this] {
         std::vector<std::string> found;
@@ -426,13 +326,19 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
         for (const json& scene : list["scenes"]) found.push_back(scene["kind"]);
         return found;
     };
-    EXPECT_EQ(kinds(), (std::vector<std::string>{"saved", "recovery"}));
+    EXPECT_EQ(kinds(), (std::vector<std::string>{"saved"})) << "the journal is in use";
     session_ = make();
+    EXPECT_EQ(kinds(), (std::vector<std::string>{"saved", "recovery"}));
     run("scene.load", {{"name", "../My: scene?"}});
-    EXPECT_EQ(document(), before);
-    run("scene.load", {{"name", "autosave/../My: scene?"}});
+    EXPECT_EQ(document()["entities"], before["entities"]);
+    const json recovered = run("hello")["recovered"];
+    ASSERT_EQ(recovered.size(), 1u);
+    EXPECT_EQ(recovered[0]["title"], "../My: scene?");
+    EXPECT_EQ(recovered[0]["scene"], "../My: scene?");
+    run("scene.load", {{"name", recovered[0]["name"]}});
     EXPECT_EQ(document(), edited);
     EXPECT_EQ(run("hello")["unsaved"], true);
+    EXPECT_EQ(run("hello")["name"], "../My: scene?");
     run("scene.save");
     EXPECT_EQ(kinds(), (std::vector<std::string>{"saved"}));
     run("scene.load", {{"scene", before}});
@@ -457,7 +363,7 @@ TEST_F(SessionTest, DifferentNamesAreDifferentScenes) {
     EXPECT_TRUE(std::is_permutation(names.begin(), names.end(), listed.begin(), listed.end())) << scenes.dump(2);
     for (const std::string& name : names) {
         run("scene.load", {{"name", name}});
-        EXPECT_EQ(document()["title"], "title of " + name);
+        EXPECT_EQ(document()["title"], name) << "saving gives the scene the name as its title";
         EXPECT_EQ(run("hello")["name"], name);
     }
     // All of them are files in the same folder.
@@ -491,14 +397,14 @@ TEST_F(SessionTest, NamesThatNoFileCanHaveAreRefusedAndTitlesOfAnyLengthAreKept)
     for (const char* name : {"demo/stack", "autosave/stack"})
         EXPECT_NE(error_of("scene.save", {{"name", name}}).find("name: begins with"), std::string::npos);
 
-    // Two long titles that differ at their ends have an autosave each.
+    // Two long titles that differ at their ends have a journal each.
     for (const char* end : {"1", "2"}) {
         std::string title;
         for (int i = 0; i < 500; ++i) title += "è/";
         run("scene.new", {{"name", title + end}});
         add_box({0, 1, 0});
-        ASSERT_TRUE(session_->autosave().ok());
     }
+    session_ = make();
     std::set<std::string> titles;
     const json scenes = run("scene.list")["scenes"];
     for (const json& scene : scenes) {
@@ -511,10 +417,9 @@ TEST_F(SessionTest, NamesThatNoFileCanHaveAreRefusedAndTitlesOfAnyLengthAreKept)
 
 TEST_F(SessionTest, DraftsOfKilledSavesGoAtTheNextStart) {
     run("scene.save", {{"name", "kept"}});
-    ASSERT_TRUE(session_->autosave().ok());
     fs::create_directories(folder_ / "saved" / "autosave");
     const fs::path drafts[] = {folder_ / "saved" / "kept.json.77-1.embody-draft",
-                               folder_ / "saved" / "autosave" / "kept.json.77-2.embody-draft",
+                               folder_ / "saved" / "autosave" / "kept.journal.77-2.embody-draft",
                                folder_ / "saved" / "kept.json.77-3.embody-draft"};
     for (const fs::path& draft : drafts) std::ofstream(draft) << "half a sce";
     const fs::path others[] = {folder_ / "saved" / "kept.json.backup", folder_ / "saved" / "notes.txt"};

@@ -49,18 +49,64 @@ json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, c
 
 namespace {
 
+// The value with its null components replaced by those of `present`: they stay as they are.
+json with_present(const json& value, const json& present) {
+    if (value.is_null()) return present;
+    if (!value.is_array() || !present.is_array() || value.size() != present.size()) return value;
+    json filled = json::array();
+    for (std::size_t i = 0; i < value.size(); ++i) filled.push_back(with_present(value[i], present[i]));
+    return filled;
+}
+
+bool has_null(const json& value) {
+    return value.is_array() &&
+           std::any_of(value.begin(), value.end(), [](const json& item) { return item.is_null() || has_null(item); });
+}
+
+/// A new value of each entity; empty: the automatic one.
+using NewValues = std::vector<std::optional<attributes::AttributeValue>>;
+
+Result<attributes::AttributeValue> read_value(const SessionState& state, const std::string& name, const json& value) {
+    Result<attributes::AttributeValue> read = attribute_from_json(name, value, "value");
+    if (read.ok() && state.catalog)
+        read = attributes::known_value(state.catalog->taxonomy(), name, std::move(read).value());
+    return read;
+}
+
+// Of a vector or tensor with null components each entity keeps its own there.
+Result<NewValues> read_values(SessionState& state, const std::vector<EntityIndex>& indices, const std::string& name,
+                              const json& value) {
+    NewValues values;
+    if (!has_null(value)) {
+        Result<attributes::AttributeValue> read = read_value(state, name, value);
+        if (!read.ok()) return read.error();
+        values.assign(indices.size(), std::move(read).value());
+        return values;
+    }
+    for (const EntityIndex index : indices) {
+        const Result<AttributeSet> acting = state.definitions.attributes.acting(*state.document.find(index));
+        if (!acting.ok()) return acting.error();
+        const AttributeEntry* entry = acting.value().find(name);
+        Result<attributes::AttributeValue> read =
+            read_value(state, name, entry ? with_present(value, attributes::to_json(entry->value)) : value);
+        if (!read.ok()) return read.error();
+        values.emplace_back(std::move(read).value());
+    }
+    return values;
+}
+
 // Sets a new value of the attribute in each entity, or removes it.
 Result<json> change_attribute(SessionState& state, const std::vector<EntityIndex>& indices, const std::string& name,
-                              const std::optional<attributes::AttributeValue>& value, const std::string& merge) {
+                              const NewValues& values, const std::string& merge) {
     const AttributeDescription* description = attributes::describe(name);
     const std::string label = description && !description->label.empty() ? description->label : name;
-    Edit edit = state.start_edit((value ? "Set " : "Reset ") + label + " of " + state.called(indices));
+    Edit edit = state.start_edit((values.front() ? "Set " : "Reset ") + label + " of " + state.called(indices));
     edit.merge = merge;
-    for (const EntityIndex index : indices) {
-        const Entity& before = *state.document.find(index);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        const Entity& before = *state.document.find(indices[i]);
         EntityChange change = change_of(before, before);
-        if (value) {
-            change.after->attributes[name] = *value;
+        if (values[i]) {
+            change.after->attributes[name] = *values[i];
         } else if (change.after->attributes.erase(name) == 0) {
             continue;
         }
@@ -79,12 +125,9 @@ Result<json> set_attribute(SessionState& state, const json& params) {
     const json* value = reader.need("value", "the attribute's new value");
     reader.text("merge", merge);
     if (!reader.finish()) return *error;
-    Result<attributes::AttributeValue> read = attribute_from_json(name, *value, "value");
-    if (read.ok() && state.catalog) {
-        read = attributes::known_value(state.catalog->taxonomy(), name, std::move(read).value());
-    }
-    if (!read.ok()) return read.error();
-    return change_attribute(state, indices, name, read.value(), merge);
+    const Result<NewValues> values = read_values(state, indices, name, *value);
+    if (!values.ok()) return values.error();
+    return change_attribute(state, indices, name, values.value(), merge);
 }
 
 Result<json> reset_attribute(SessionState& state, const json& params) {
@@ -96,7 +139,7 @@ Result<json> reset_attribute(SessionState& state, const json& params) {
     need_text(reader, "name", "an attribute's name", name);
     if (!reader.finish()) return *error;
     if (!attributes::describe(name)) return attribute_from_json(name, 0, "name").error();
-    return change_attribute(state, indices, name, std::nullopt, {});
+    return change_attribute(state, indices, name, NewValues(indices.size()), {});
 }
 
 struct ActingEntity {

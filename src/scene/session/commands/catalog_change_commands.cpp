@@ -22,7 +22,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t max_keys = 10'000;
-constexpr std::size_t max_name_bytes = 160;
 /// Maximum number of changes in one answer with the history: some megabytes.
 constexpr std::size_t max_told_changes = 20'000;
 /// Number of models that a preview names; the history has all.
@@ -166,25 +165,6 @@ json batch_json(const ChangeBatchRecord& batch) {
 // Commands
 // -------------------------------------------------------------------------------------------------------------
 
-Result<json> set_name(SessionState& state, const json& params) {
-    std::optional<Error> error;
-    FieldReader reader(params, "", error);
-    std::string name;
-    need_text(reader, "name", "your name, or nothing", name);
-    if (!reader.finish()) return *error;
-    const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
-    if (std::any_of(name.begin(), name.end(), is_control)) return Error{"name", "must be one line of text"};
-    name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
-    name.erase(name.find_last_not_of(' ') + 1);
-    if (name.size() > max_name_bytes)
-        return Error{"name", "is longer than " + std::to_string(max_name_bytes) + " bytes", "shorten it"};
-    if (name.empty())
-        state.client_names.erase(state.client);
-    else
-        state.client_names[state.client] = name;
-    return json{{"session", acting_session(state)}};
-}
-
 Result<json> change(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -287,8 +267,7 @@ Result<json> reset_model_attribute(SessionState& state, const json& params) { re
 }  // namespace
 
 std::span<const Command> catalog_change_commands() {
-    static constexpr Command commands[] = {{"client.set_name", set_name},
-                                           {"catalog.change", change},
+    static constexpr Command commands[] = {{"catalog.change", change},
                                            {"catalog.undo", undo},
                                            {"catalog.history", history},
                                            {"catalog.stop", stop},

@@ -22,6 +22,7 @@ struct Command {
 // One list for each family of commands, each in one file.
 std::span<const Command> catalog_commands();
 std::span<const Command> catalog_change_commands();
+std::span<const Command> people_commands();
 std::span<const Command> scene_commands();
 std::span<const Command> entity_commands();
 std::span<const Command> placement_commands();

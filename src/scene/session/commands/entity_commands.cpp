@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "attributes/physical_kind.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
 #include "scene/session/commands/commands.h"
@@ -35,6 +36,18 @@ Result<void> check_room(const Document& document, std::size_t count) {
     return Error{"entity", "a scene can have " + std::to_string(max_entities) + " entities", "delete some first"};
 }
 
+// Floors, walls and ceilings that never move: they come locked.
+bool is_surroundings(SessionState& state, const Entity& entity) {
+    static const std::set<std::string> categories = {"room", "ground",  "floor",     "floor slab",
+                                                     "wall", "ceiling", "stud wall", "roof"};
+    const Result<attributes::AttributeSet> acting = state.definitions.attributes.acting(entity);
+    if (!acting.ok() || !attributes::is_static(kind_of(acting.value()))) return false;
+    if (!std::holds_alternative<ModelReference>(entity.geometry)) return categories.contains(entity.category);
+    const Result<catalog::ModelSummary> model = state.definitions.models.summary_of(entity);
+    return model.ok() &&
+           (categories.contains(model.value().category) || categories.contains(model.value().subcategory));
+}
+
 Result<json> add(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -63,6 +76,8 @@ Result<json> add(SessionState& state, const json& params) {
         entity.name = state.lookup.names.free_name(name.value());
     }
 
+    if (!given->contains("locked")) entity.locked = is_surroundings(state, entity);
+
     // Placed at the pointer.
     if (origin) {
         Result<Transform> pose = place_on_ray(state, entity, *origin, *direction);
@@ -83,6 +98,7 @@ Result<json> remove(SessionState& state, const json& params) {
     std::vector<EntityIndex> indices;
     need_indices(reader, state, indices);
     if (!reader.finish()) return *error;
+    if (Result<void> free = state.check_unlocked(indices); !free.ok()) return free.error();
 
     // Joints and pins first: undo goes in the reverse order and needs the entities at their ends.
     Edit edit = state.start_edit("Delete " + state.called(indices));
@@ -131,6 +147,7 @@ Result<json> transform(SessionState& state, const json& params) {
         edit.changes.emplace_back(change);
     }
     if (!reader.finish()) return *error;
+    if (Result<void> free = state.check_unlocked({moved.begin(), moved.end()}); !free.ok()) return free.error();
     edit.label = "Move " + state.called({moved.begin(), moved.end()});
     return done(state.commit(std::move(edit)));
 }
@@ -147,6 +164,9 @@ Result<json> update(SessionState& state, const json& params) {
     Result<const Entity*> found = state.entity(index, "index");
     if (!found.ok()) return found.error();
 
+    for (const char* field : {"pose", "scale", "model", "shape"})
+        if (fields->contains(field))
+            if (Result<void> free = state.check_unlocked({index}); !free.ok()) return free.error();
     Entity changed = *found.value();
     if (Result<void> read = change_entity_from_json(changed, *fields, "entity", false); !read.ok()) return read.error();
     const bool same_geometry = !fields->contains("model") && !fields->contains("shape");
@@ -186,6 +206,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
     for (const EntityIndex index : indices) {
         Entity copy = *state.document.find(index);
         copy.index = copy_of.at(index);
+        copy.locked = false;
         // Pins between copied things lead to the copies, as between the originals.
         for (Pin& pin : copy.pins)
             if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
@@ -201,14 +222,31 @@ Result<json> duplicate(SessionState& state, const json& params) {
     return json{{"indices", std::move(copies)}};
 }
 
+Result<json> lock(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    bool locked = true;
+    need_indices(reader, state, indices);
+    if (reader.need("locked", "true or false")) reader.truth("locked", locked);
+    if (!reader.finish()) return *error;
+    Edit edit = state.start_edit((locked ? "Lock " : "Unlock ") + state.called(indices));
+    for (const EntityIndex index : indices) {
+        const Entity& before = *state.document.find(index);
+        if (before.locked == locked) continue;
+        EntityChange change = change_of(before, before);
+        change.after->locked = locked;
+        edit.changes.emplace_back(std::move(change));
+    }
+    return done(state.commit(std::move(edit)));
+}
+
 }  // namespace
 
 std::span<const Command> entity_commands() {
-    static constexpr Command commands[] = {{"entity.add", add},
-                                           {"entity.remove", remove},
-                                           {"entity.transform", transform},
-                                           {"entity.update", update},
-                                           {"entity.duplicate", duplicate}};
+    static constexpr Command commands[] = {
+        {"entity.add", add},       {"entity.remove", remove},       {"entity.transform", transform},
+        {"entity.update", update}, {"entity.duplicate", duplicate}, {"entity.lock", lock}};
     return commands;
 }
 

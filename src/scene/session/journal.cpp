@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "foundation/state_hash.h"
+#include "scene/document/history.h"
+#include "scene/file/json/change_json.h"
+#include "scene/file/scene_file.h"
+#include "scene/file/whole_file.h"
+#include "scene/session/file_names.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* extension = ".journal";
+constexpr int format_version = 1;
+constexpr std::size_t kept_recoveries = 50;
+/// The document is written anew once the lines behind it are larger than it and than this, bytes: reading stays short,
+/// and writing at most doubles.
+constexpr std::size_t min_lines_size = std::size_t{1} << 20;
+constexpr auto sync_period = std::chrono::seconds(1);
+constexpr std::size_t checksum_digits = 16;
+
+// A line: the checksum of the text behind it, and the text, which has no line break in it.
+std::string line_of(const json& value) {
+    const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    StateHash hash;
+    hash.add_bytes(text.data(), text.size());
+    char digits[checksum_digits];
+    const std::to_chars_result end = std::to_chars(digits, digits + checksum_digits, hash.value(), 16);
+    std::string line(digits, end.ptr);
+    line.insert(0, checksum_digits - line.size(), '0');
+    return line + " " + text + "\n";
+}
+
+// The value of a line; empty where it is not whole.
+std::optional<json> value_of(const std::string& line) {
+    if (line.size() <= checksum_digits + 1) return std::nullopt;
+    const std::string_view text = std::string_view(line).substr(checksum_digits + 1);
+    StateHash hash;
+    hash.add_bytes(text.data(), text.size());
+    std::uint64_t told = 0;
+    const std::from_chars_result read = std::from_chars(line.data(), line.data() + checksum_digits, told, 16);
+    if (read.ptr != line.data() + checksum_digits || told != hash.value()) return std::nullopt;
+    json value = json::parse(text, nullptr, false);
+    if (value.is_discarded()) return std::nullopt;
+    return value;
+}
+
+bool write_all(int descriptor, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t written = write(descriptor, text.data(), text.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        text.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+Error can_not_write(const fs::path& file) {
+    return Error{file.string(), std::string("edits can't be kept: ") + std::strerror(errno), "save the scene"};
+}
+
+// Whether a running program holds the journal.
+bool is_held(const fs::path& file) {
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (descriptor < 0) return true;
+    const bool is_free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+    close(descriptor);
+    return !is_free;
+}
+
+std::optional<json> head_of(std::istream& in) {
+    std::string line;
+    if (!std::getline(in, line)) return std::nullopt;
+    std::optional<json> head = value_of(line);
+    if (!head || !head->is_object() || head->value("embody_journal", 0) != format_version) return std::nullopt;
+    for (const char* field : {"scene", "title", "started"})
+        if (!head->contains(field) || !(*head)[field].is_string()) return std::nullopt;
+    return head;
+}
+
+std::vector<fs::path> journals_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code problem;
+    for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem))
+        if (entry->path().extension() == extension) files.push_back(entry->path());
+    return files;
+}
+
+// A name that no file of the folder has.
+fs::path free_file(const fs::path& folder, const std::string& name, std::string time) {
+    std::erase(time, ':');
+    const std::string stem = shortened_stem(name) + " " + time;
+    fs::path file = folder / (stem + extension);
+    for (int number = 2; fs::exists(file); ++number) file = folder / (stem + " " + std::to_string(number) + extension);
+    return file;
+}
+
+}  // namespace
+
+// Writing
+// ----------------------------------------------------------------------------------------------------------------
+
+Result<std::unique_ptr<Journal>> Journal::begin(const fs::path& folder, const std::string& scene,
+                                                const Document& document) {
+    const std::vector<Recovery> recoveries = list_recoveries(folder);
+    for (std::size_t i = kept_recoveries; i < recoveries.size(); ++i) {
+        std::error_code ignored;
+        fs::remove(recoveries[i].file, ignored);
+    }
+    std::unique_ptr<Journal> journal(new Journal);
+    journal->scene_ = scene;
+    journal->started_ = utc_text(std::chrono::system_clock::now());
+    journal->file_ = free_file(folder, scene.empty() ? document.title : scene, journal->started_);
+    if (Result<void> written = journal->write_anew(document); !written.ok()) return written.error();
+    journal->syncing_ = std::thread([&self = *journal] { self.sync_each_second(); });
+    return journal;
+}
+
+Journal::~Journal() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    changed_.notify_all();
+    if (syncing_.joinable()) syncing_.join();
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
+// The head and the whole document, in place of what was there.
+Result<void> Journal::write_anew(const Document& document) {
+    const json head = {{"embody_journal", format_version},
+                       {"scene", scene_},
+                       {"title", document.title},
+                       {"started", started_},
+                       {"edits", edits_}};
+    const std::string text = line_of(head) + line_of({{"document", document_to_json(document)}});
+    if (Result<void> written = write_whole_file(file_, text); !written.ok()) return written;
+    const int opened = open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (opened < 0) return can_not_write(file_);
+    // A file system without locks: another program may offer the journal as a recovery while this one runs.
+    (void)flock(opened, LOCK_EX | LOCK_NB);
+    const std::lock_guard lock(mutex_);
+    if (descriptor_ >= 0) close(descriptor_);
+    descriptor_ = opened;
+    whole_size_ = text.size();
+    lines_size_ = 0;
+    is_dirty_ = false;
+    return {};
+}
+
+Result<void> Journal::add(const json& changes, const Document& document) {
+    ++edits_;
+    if (lines_size_ > std::max(whole_size_, min_lines_size)) return write_anew(document);
+    const std::string line = line_of({{"changes", changes}, {"next_index", document.next_index}});
+    if (!write_all(descriptor_, line)) return can_not_write(file_);
+    lines_size_ += line.size();
+    {
+        const std::lock_guard lock(mutex_);
+        is_dirty_ = true;
+    }
+    changed_.notify_all();
+    return {};
+}
+
+// Syncing takes milliseconds to seconds, for which no edit waits.
+void Journal::sync_each_second() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return ends_ || is_dirty_; });
+        if (is_dirty_) {
+            is_dirty_ = false;
+            const int copy = dup(descriptor_);
+            lock.unlock();
+            if (copy >= 0) {
+                (void)fdatasync(copy);
+                close(copy);
+            }
+            lock.lock();
+        }
+        if (changed_.wait_for(lock, sync_period, [this] { return ends_; })) return;
+    }
+}
+
+void Journal::remove() {
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+}
+
+// Reading
+// ----------------------------------------------------------------------------------------------------------------
+
+std::vector<Recovery> list_recoveries(const fs::path& folder) {
+    std::vector<Recovery> found;
+    for (const fs::path& file : journals_in(folder)) {
+        std::ifstream in(file, std::ios::binary);
+        const std::optional<json> head = head_of(in);
+        if (!head || is_held(file)) continue;
+        std::error_code ignored;
+        Recovery recovery{file, (*head)["scene"], (*head)["title"], utc_text(fs::last_write_time(file, ignored)),
+                          head->value("edits", std::size_t{0})};
+        std::string line;
+        std::getline(in, line);  // the document
+        while (std::getline(in, line) && !in.eof()) ++recovery.edits;
+        found.push_back(std::move(recovery));
+    }
+    std::sort(found.begin(), found.end(), [](const Recovery& a, const Recovery& b) {
+        return a.modified != b.modified ? a.modified > b.modified : a.file > b.file;
+    });
+    return found;
+}
+
+Result<Recovered> read_journal(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::optional<json> head = head_of(in);
+    if (!head) return Error{file.string(), "is no journal of this version of Embody"};
+    std::string line;
+    const std::optional<json> whole = std::getline(in, line) ? value_of(line) : std::nullopt;
+    if (!whole || !whole->is_object() || !whole->contains("document"))
+        return Error{file.string(), "ends before its document does"};
+    Result<Document> document = document_from_json((*whole)["document"]);
+    if (!document.ok())
+        return Error{file.string() + ": " + document.error().where, document.error().why, document.error().remedy};
+    Recovered recovered{std::move(document).value(), (*head)["scene"]};
+
+    // Each line is all the changes of an edit, or it is not there.
+    while (std::getline(in, line)) {
+        const std::optional<json> edit = value_of(line);
+        if (!edit || !edit->is_object() || !edit->contains("changes")) break;
+        if (!apply_changes(recovered.document, (*edit)["changes"]).ok()) break;
+        recovered.document.next_index = edit->value("next_index", recovered.document.next_index);
+    }
+    return recovered;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "foundation/result.h"
+#include "scene/document/document.h"
+
+namespace embody::scene {
+
+/// The file that holds every edit of one open document (docs/session.md, "Journal"): a kill of the process loses none
+/// that add() has returned for, a power cut at most those of the last second.
+class Journal {
+public:
+    /// Begins a journal in the folder, which is made if missing, after the first edit of a document that is saved under
+    /// `scene` (empty: not yet). Of journals that no running program holds the newest 50 are kept.
+    static Result<std::unique_ptr<Journal>> begin(const std::filesystem::path& folder, const std::string& scene,
+                                                  const Document& document);
+    /// The file stays, and is a recovery from then on.
+    ~Journal();
+    Journal(const Journal&) = delete;
+    Journal& operator=(const Journal&) = delete;
+
+    /// Appends the changes of an edit as a document event tells them; `document` is as it is after them.
+    Result<void> add(const nlohmann::json& changes, const Document& document);
+    /// Removes the file: its document is saved.
+    void remove();
+
+private:
+    Journal() = default;
+    Result<void> write_anew(const Document& document);
+    void sync_each_second();
+
+    std::filesystem::path file_;
+    std::string scene_, started_;
+    int descriptor_ = -1;         ///< locked
+    std::size_t whole_size_ = 0;  ///< bytes of the document as it was written last
+    std::size_t lines_size_ = 0;  ///< bytes of the edits behind it
+    std::size_t edits_ = 1;       ///< with that which began the journal
+
+    std::mutex mutex_;  ///< guards what follows, and the descriptor against the syncing thread
+    std::condition_variable changed_;
+    bool is_dirty_ = false, ends_ = false;
+    std::thread syncing_;
+};
+
+/// A journal that no running program holds.
+struct Recovery {
+    std::filesystem::path file;
+    std::string scene;  ///< name of the saved scene; empty: never saved
+    std::string title;
+    std::string modified;  ///< UTC
+    std::size_t edits = 0;
+};
+
+/// The newest first. Files that are no journals are left out.
+std::vector<Recovery> list_recoveries(const std::filesystem::path& folder);
+
+struct Recovered {
+    Document document;
+    std::string scene;  ///< as in Recovery
+};
+/// The document with all edits up to the first line that is not whole.
+Result<Recovered> read_journal(const std::filesystem::path& file);
+
+}  // namespace embody::scene

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/people.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+/// Colours that people with any colour vision can tell apart (Okabe and Ito, "Color universal design", 2008), without
+/// black and without the yellow that is lost on a light background.
+constexpr std::array<const char*, 6> palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+/// Persons that are remembered; of more, those who are not connected are forgotten.
+constexpr std::size_t max_persons = 1000;
+
+}  // namespace
+
+Client& People::client(ClientId id) {
+    const auto [found, is_new] = clients_.try_emplace(id);
+    // The program itself is person 0.
+    if (is_new && id != 0) found->second.person = ++last_person_;
+    return found->second;
+}
+
+Client& People::meet(ClientId id, const std::string& person) {
+    Client& met = client(id);
+    if (persons_.size() >= max_persons) {
+        std::erase_if(persons_, [this](const auto& known) {
+            return std::none_of(clients_.begin(), clients_.end(),
+                                [&](const auto& other) { return other.second.person == known.second; });
+        });
+    }
+    met.person = persons_.try_emplace(person, met.person).first->second;
+    if (!met.is_member) met.color = free_color();
+    met.is_member = true;
+    return met;
+}
+
+bool People::leave(ClientId id) {
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return false;
+    const bool was_member = found->second.is_member;
+    clients_.erase(found);
+    return was_member;
+}
+
+// The first colour that the fewest members have.
+std::string People::free_color() const {
+    const auto uses = [this](const char* color) {
+        return std::count_if(clients_.begin(), clients_.end(),
+                             [color](const auto& other) { return other.second.color == color; });
+    };
+    return *std::min_element(palette.begin(), palette.end(),
+                             [&](const char* a, const char* b) { return uses(a) < uses(b); });
+}
+
+std::vector<ClientId> People::others(ClientId id) const {
+    std::vector<ClientId> found;
+    for (const auto& [other, client] : clients_)
+        if (other != id && client.is_member) found.push_back(other);
+    return found;
+}
+
+std::string People::called(ClientId id) const {
+    const auto found = clients_.find(id);
+    if (found != clients_.end() && !found->second.name.empty()) return found->second.name;
+    return "Studio " + std::to_string(id);
+}
+
+std::string People::person_called(PersonId person) const {
+    const auto found = std::find_if(clients_.begin(), clients_.end(),
+                                    [person](const auto& client) { return client.second.person == person; });
+    return found == clients_.end() ? "somebody who has left" : called(found->first);
+}
+
+json People::members() const {
+    json members = json::array();
+    for (const auto& [id, client] : clients_)
+        if (client.is_member) members.push_back({{"client", id}, {"name", called(id)}, {"color", client.color}});
+    return members;
+}
+
+}  // namespace embody::scene

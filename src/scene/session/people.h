@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/document/history.h"
+#include "scene/session/session.h"
+
+namespace embody::scene {
+
+/// A connected client, and what it said of itself.
+struct Client {
+    PersonId person = 0;     ///< whose steps of undo its edits are
+    bool is_member = false;  ///< a page of the Studio: it gave a person
+    bool is_greeted = false;
+    std::string name;
+    std::string color;                               ///< of a member, "#rrggbb"
+    std::shared_ptr<const nlohmann::json> presence;  ///< what client.present told last; null: nothing
+    std::optional<std::string> undo, redo;           ///< labels that it was told last
+};
+
+/// Who is connected (docs/session.md, "People").
+class People {
+public:
+    /// The client, known or new; a new one is a person of its own.
+    Client& client(ClientId id);
+    /// Makes it a member that is the person of this text, the same as at an earlier connection.
+    Client& meet(ClientId id, const std::string& person);
+    /// Whether it was a member.
+    bool leave(ClientId id);
+
+    [[nodiscard]] const std::map<ClientId, Client>& clients() const { return clients_; }
+    [[nodiscard]] std::map<ClientId, Client>& clients() { return clients_; }
+    /// The other members.
+    [[nodiscard]] std::vector<ClientId> others(ClientId id) const;
+    /// For people: the client's name, or "Studio 3".
+    [[nodiscard]] std::string called(ClientId id) const;
+    /// For people: the name of a client that is this person, else "somebody who has left".
+    [[nodiscard]] std::string person_called(PersonId person) const;
+    /// The `members` of the protocol.
+    [[nodiscard]] nlohmann::json members() const;
+
+private:
+    std::string free_color() const;
+
+    std::map<ClientId, Client> clients_;
+    std::map<std::string, PersonId> persons_;  ///< by the text that the page keeps
+    PersonId last_person_ = 0;
+};
+
+}  // namespace embody::scene

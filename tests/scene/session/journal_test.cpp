@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/journal.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "scene/session/session_fixture.h"
+#include "scene/session/session_state.h"
+
+namespace embody::scene {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class JournalTest : public SessionTest {
+protected:
+    fs::path folder() const { return folder_ / "saved" / "autosave"; }
+    std::vector<fs::path> files() const {
+        std::vector<fs::path> found;
+        if (!fs::exists(folder())) return found;
+        for (const auto& entry : fs::directory_iterator(folder())) found.push_back(entry.path());
+        return found;
+    }
+    // The document of the only journal.
+    json kept() {
+        const std::vector<fs::path> found = files();
+        if (found.size() != 1) {
+            ADD_FAILURE() << found.size() << " files";
+            return {};
+        }
+        const Result<Recovered> read = read_journal(found[0]);
+        if (!read.ok()) {
+            ADD_FAILURE() << read.error().message();
+            return {};
+        }
+        return document_to_json(read.value().document);
+    }
+    static std::string content_of(const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+};
+
+TEST_F(JournalTest, HoldsEveryAcknowledgedEditUndoAndRedo) {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        session_.reset();
+        fs::remove_all(folder());
+        session_ = make();
+        Random random(seed);
+        if (seed % 4 == 0) run("simulation.play");
+        for (int i = 0; i < 120; ++i) {
+            std::string name;
+            json params = random_command(random, session_->document(), name);
+            const std::uint64_t what = random.below(6);
+            if (what < 2) {
+                name = what == 0 ? "edit.undo" : "edit.redo";
+                params = json::object();
+            }
+            (void)session_->execute(name, params, 1 + random.below(3)).ok();
+            if (seed % 4 == 0) session_->step();
+            if (files().empty()) {
+                ASSERT_FALSE(run("hello")["unsaved"]) << "seed " << seed << ", command " << i;
+            } else {
+                ASSERT_EQ(kept(), document()) << "seed " << seed << ", command " << i << ": " << name;
+            }
+        }
+    }
+}
+
+TEST_F(JournalTest, ACutOrDamagedFileGivesADocumentThatWasOrAReason) {
+    std::set<std::string> states;
+    Random random(7);
+    for (int i = 0; i < 40; ++i) {
+        std::string name;
+        const json params = random_command(random, session_->document(), name);
+        if (session_->execute(name, params).ok()) states.insert(document().dump());
+    }
+    const std::string whole = content_of(files().at(0));
+    const fs::path damaged = folder_ / "damaged.journal";
+    std::size_t read_well = 0, refused = 0;
+    for (int i = 0; i < 400; ++i) {
+        std::string text = whole;
+        if (i % 2 == 0) {
+            text.resize(random.below(whole.size()));
+        } else {
+            text[random.below(whole.size())] ^= static_cast<char>(1 + random.below(255));
+        }
+        std::ofstream(damaged, std::ios::binary) << text;
+        const Result<Recovered> read = read_journal(damaged);
+        if (!read.ok()) {
+            EXPECT_FALSE(read.error().message().empty());
+            ++refused;
+            continue;
+        }
+        ++read_well;
+        ASSERT_TRUE(states.contains(document_to_json(read.value().document).dump())) << "case " << i;
+    }
+    EXPECT_GT(read_well, 200u);
+    EXPECT_GT(refused, 5u) << "of a file without its document nothing is left";
+}
+
+TEST_F(JournalTest, IsARecoveryOnceItsSessionHasEnded) {
+    run("scene.new", {{"name", "Flat"}});
+    add_box({0, 1, 0});
+    add_box({1, 1, 0});
+    const json edited = document();
+    EXPECT_EQ(run("hello")["recovered"], json::array()) << "it is in use";
+    session_.reset();
+    session_ = make();
+    const json recovered = run("hello")["recovered"];
+    ASSERT_EQ(recovered.size(), 1u);
+    EXPECT_EQ(recovered[0]["title"], "Flat");
+    EXPECT_EQ(recovered[0]["edits"], 2);
+    EXPECT_EQ(recovered[0]["scene"], "") << "it was never saved";
+    EXPECT_EQ(recovered[0]["modified"].get<std::string>().size(), std::string("2026-11-24T03:10:00Z").size());
+    EXPECT_EQ(run("scene.list")["scenes"], recovered);
+
+    // Opened it is unsaved work of this session, kept in a new journal.
+    run("scene.load", {{"name", recovered[0]["name"]}});
+    EXPECT_EQ(document(), edited);
+    EXPECT_EQ(run("hello")["unsaved"], true);
+    EXPECT_EQ(kept(), edited);
+    session_.reset();
+    session_ = make();
+    const json again = run("hello")["recovered"];
+    ASSERT_EQ(again.size(), 1u);
+    run("scene.discard", {{"name", again[0]["name"]}});
+    EXPECT_TRUE(files().empty());
+    EXPECT_NE(error_of("scene.discard", {{"name", again[0]["name"]}}).find("there is no recovered scene"),
+              std::string::npos);
+    EXPECT_NE(error_of("scene.discard", {{"name", "autosave/../kept"}}).find("there is no recovered scene"),
+              std::string::npos);
+}
+
+TEST_F(JournalTest, UnsavedWorkSurvivesThatAnotherSceneIsOpened) {
+    run("scene.new", {{"name", "One"}});
+    add_box({0, 1, 0});
+    const json one = document();
+    run("scene.new", {{"name", "Two"}});
+    EXPECT_EQ(run("hello")["recovered"].size(), 1u);
+    run("scene.load", {{"name", run("hello")["recovered"][0]["name"]}});
+    EXPECT_EQ(document(), one);
+}
+
+TEST_F(JournalTest, GoesWithASaveAndWithTheUndoOfTheLastEdit) {
+    add_box({0, 1, 0});
+    EXPECT_EQ(files().size(), 1u);
+    run("edit.undo");
+    EXPECT_TRUE(files().empty()) << "nothing is unsaved";
+    run("edit.redo");
+    EXPECT_EQ(kept(), document());
+    run("scene.save", {{"name", "kept"}});
+    EXPECT_TRUE(files().empty());
+    add_box({1, 1, 0});
+    EXPECT_EQ(kept(), document());
+}
+
+TEST_F(JournalTest, StaysShortThroughDragsThatDoNotEnd) {
+    const EntityIndex box = add_box({0, 1, 0});
+    std::uintmax_t largest = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        run("entity.transform", {{"merge", "drag"}, {"poses", {{{"index", box}, {"position", {0.001 * i, 1, 0}}}}}});
+        if (i % 20 == 0) largest = std::max(largest, fs::file_size(files().at(0)));
+    }
+    EXPECT_GT(largest, (1u << 20) - (1u << 16)) << "the drag must outgrow the document";
+    EXPECT_LT(largest, (1u << 20) + (1u << 16));
+    EXPECT_EQ(kept(), document());
+    session_.reset();
+    EXPECT_EQ(list_recoveries(folder()).at(0).edits, 20'001u);
+}
+
+TEST_F(JournalTest, AFolderThatCannotBeWrittenIsToldOnceAndEditsGoOn) {
+    fs::create_directories(folder_ / "saved");
+    std::ofstream(folder_ / "saved" / "autosave") << "a file is where the folder should be";
+    session_->take_events();
+    add_box({0, 1, 0});
+    add_box({1, 1, 0});
+    std::size_t told = 0;
+    for (const json& event : session_->take_events().messages) told += event["event"] == "message" ? 1 : 0;
+    EXPECT_EQ(told, 1u);
+    EXPECT_EQ(session_->document().entities.size(), 3u);
+
+    // Once it can be written again, everything is kept.
+    fs::remove(folder_ / "saved" / "autosave");
+    add_box({2, 1, 0});
+    EXPECT_EQ(kept(), document());
+}
+
+TEST_F(JournalTest, OnlyTheNewestFiftyRecoveriesAreKept) {
+    for (int i = 0; i < 53; ++i) {
+        run("scene.new", {{"name", "Scene " + std::to_string(i)}});
+        add_box({0, 1, 0});
+        // Files of one second are ordered by their names, which do not tell what came first.
+        const std::vector<fs::path> all = files();
+        const fs::path file = *std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+            return fs::last_write_time(a) < fs::last_write_time(b);
+        });
+        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1000 - i));
+    }
+    session_.reset();
+    const std::vector<Recovery> left = list_recoveries(folder());
+    EXPECT_EQ(left.size(), 51u) << "fifty, and the one of the session that has ended";
+    EXPECT_TRUE(std::none_of(left.begin(), left.end(), [](const Recovery& one) { return one.title == "Scene 0"; }));
+    EXPECT_TRUE(std::any_of(left.begin(), left.end(), [](const Recovery& one) { return one.title == "Scene 52"; }));
+}
+
+TEST_F(JournalTest, AutosavesOfEarlierVersionsAreOffered) {
+    fs::create_directories(folder());
+    ASSERT_TRUE(save_document(new_document("Old"), folder() / "Old%3A work.json").ok());
+    const json recovered = run("hello")["recovered"];
+    ASSERT_EQ(recovered.size(), 1u);
+    EXPECT_EQ(recovered[0]["name"], "autosave/Old: work");
+    run("scene.load", {{"name", recovered[0]["name"]}});
+    EXPECT_EQ(document()["title"], "Old");
+    EXPECT_EQ(files().size(), 1u) << "it is in a journal now";
+}
+
+}  // namespace
+}  // namespace embody::scene
