@@ -25,6 +25,8 @@ export interface ModelSummary {
 
 /** A vector has three numbers, a symmetric tensor six: xx, yy, zz, xy, xz, yz. */
 export type AttributeValue = number | string | boolean | number[];
+/** What an attribute is set to; components of a vector or tensor that are null stay as they are. */
+export type AttributeEdit = AttributeValue | (number | null)[];
 
 export interface AttributeEntry {
   name: string;
@@ -192,8 +194,9 @@ export interface Commands {
   "entity.remove": [{ indices: number[] }, unknown];
   "entity.transform": [{ poses: PoseEdit[]; merge?: string }, unknown];
   "entity.update": [{ index: number; entity: NewEntity; merge?: string }, unknown];
-  "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeValue }, unknown];
+  "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeEdit }, unknown];
   "entity.reset_attribute": [{ indices: number[]; name: string }, unknown];
+  "entity.lock": [{ indices: number[]; locked: boolean }, unknown];
   "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
   "entity.drop_to_floor": [{ indices: number[] }, unknown];
   "entity.attributes": [{ index: number }, { attributes: AttributeEntry[] }];

@@ -2,7 +2,7 @@
 import { reasonText } from "../connection/connection";
 import type { AttributeEntry, AttributeValue, ChangeSummary, ModelChoice } from "../connection/messages";
 import type { Parts } from "../parts";
-import { fieldFor } from "./attribute_row";
+import { fieldFor, wholeValue } from "./attribute_row";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 import { userNameField } from "./user_name";
@@ -47,8 +47,8 @@ class ApplyDialog {
     // The value without the entity's scale, because the model has none.
     this.value = entry.of_model ?? entry.value;
     this.scope = scopes[0]!;
-    this.field = fieldFor(entry, (value) => {
-      this.value = value;
+    this.field = fieldFor(entry, (edit) => {
+      this.value = wholeValue(edit, this.value);
       void this.ask();
     });
     this.field.set(this.value as never);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { CommandRefused, reasonText } from "../connection/connection";
-import type { AttributeEntry, AttributeValue } from "../connection/messages";
+import type { AttributeEdit, AttributeEntry } from "../connection/messages";
+import { commonComponents } from "../document/components";
 import type { Parts } from "../parts";
 import { type AttributeEdits, AttributeRow, type SharedAttribute } from "./attribute_row";
 import { type AttributeSubject, CatalogueModel, SelectedEntities } from "./attribute_subject";
@@ -32,7 +33,7 @@ export class AttributeList implements AttributeEdits {
     parts.server.catalogChanged.on(() => this.refreshSoon());
   }
 
-  set(name: string, value: AttributeValue): Promise<string | null> {
+  set(name: string, value: AttributeEdit): Promise<string | null> {
     return this.edit((subject) => subject.set(name, value));
   }
 
@@ -126,9 +127,11 @@ export function shareAttributes(sets: AttributeEntry[][]): SharedAttribute[] {
     const rest = byName.map((set) => set.get(entry.name));
     if (rest.some((other) => other === undefined)) return [];
     const text = JSON.stringify(entry.value);
+    const vectors = [entry, ...rest].map((each) => each!.value).filter((value) => Array.isArray(value));
     return [{
       entry,
       same: rest.every((other) => JSON.stringify(other!.value) === text),
+      components: commonComponents(vectors),
       overridden: entry.overridden || rest.some((other) => other!.overridden),
     }];
   });

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-import type { AttributeEntry, AttributeValue } from "../connection/messages";
+import type { AttributeEdit, AttributeEntry, AttributeValue } from "../connection/messages";
+import { withTyped } from "../document/components";
 import { element, setText, show } from "./element";
-import { type Field, NOISE, numberField, numberText, truthField, vectorField, wordField } from "./fields";
+import { type Components, type Field, numberField, truthField, vectorField, wordField } from "./fields";
+import { GROUP_LIST, NOISE, type NumberFormat, numberText, PLAIN, THRESHOLD } from "./number_text";
+import { wordText } from "./words";
 import { icon } from "../tools/icons";
 
 /** One attribute and its value in the selected entities. */
@@ -9,6 +12,8 @@ export interface SharedAttribute {
   entry: AttributeEntry;
   /** Whether all selected entities have the same value. */
   same: boolean;
+  /** Of a vector or tensor that differs: the components in which they agree. */
+  components: Components | null;
   overridden: boolean;
 }
 
@@ -25,7 +30,8 @@ const LEVELS: Record<string, string> = {
 };
 
 export interface AttributeEdits {
-  set(name: string, value: AttributeValue): Promise<string | null>;
+  /** Components of a vector or tensor that are null stay as they are in each entity. */
+  set(name: string, value: AttributeEdit): Promise<string | null>;
   reset(name: string): Promise<string | null>;
   /** The user asks to set this value for models of the catalogue. */
   apply(entry: AttributeEntry): void;
@@ -39,6 +45,7 @@ export class AttributeRow {
   private readonly source = element("span", { class: "source" });
   private readonly reset: HTMLButtonElement;
   private shown: AttributeEntry;
+  private same = true;
 
   constructor(
     entry: AttributeEntry,
@@ -80,9 +87,10 @@ export class AttributeRow {
     );
   }
 
-  show({ entry, same, overridden }: SharedAttribute): void {
+  show({ entry, same, components, overridden }: SharedAttribute): void {
     this.shown = entry;
-    this.field.set((same ? entry.value : null) as never);
+    this.same = same;
+    this.field.set((same ? entry.value : components) as never);
     const level = same ? entry.level : "mixed";
     setText(this.level, level);
     this.level.dataset["level"] = level;
@@ -95,11 +103,11 @@ export class AttributeRow {
     setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : "the selected entities differ");
     this.source.title = same ? `${entry.source}${interval ? `\n80 % interval ${interval}` : ""}` : "";
     show(this.reset, overridden);
-    this.reset.title = entry.automatic === null ? "Back to the automatic value" : `Back to the automatic value, ${valueText(entry.automatic)}`;
+    this.reset.title = entry.automatic === null ? "Back to the automatic value" : `Back to the automatic value, ${valueText(entry.automatic, entry.name)}`;
   }
 
-  private async commit(name: string, value: AttributeValue): Promise<void> {
-    this.field.setError(await this.edits.set(name, value));
+  private async commit(name: string, edit: AttributeEdit): Promise<void> {
+    this.field.setError(await this.edits.set(name, this.same ? wholeValue(edit, this.shown.value) : edit));
   }
 
   private async goBack(name: string): Promise<void> {
@@ -107,18 +115,24 @@ export class AttributeRow {
   }
 }
 
-export function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) => void): Field<never> {
+/** The value that an edit makes of a known one. */
+export function wholeValue(edit: AttributeEdit, known: AttributeValue): AttributeValue {
+  return Array.isArray(edit) ? withTyped(known as number[], edit) : edit;
+}
+
+export function fieldFor(entry: AttributeEntry, commit: (value: AttributeEdit) => void): Field<never> {
   const label = entry.label || entry.name;
+  const unit = unitText(entry.unit);
   const made = (() => {
     switch (entry.type) {
       case "number":
-        return numberField(label, entry.unit, commit);
+        return attributeNumber(label, unit, entry, commit);
       case "truth":
         return truthField(label, commit);
       case "vector":
-        return vectorField([`${label} x`, `${label} y`, `${label} z`], entry.unit, commit);
+        return vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (typed) => commit([...typed]));
       case "tensor":
-        return tensorField(label, entry.unit, commit);
+        return tensorField(label, unit, commit);
       case "word":
         return wordField(label, entry.choices ?? [], commit);
     }
@@ -126,44 +140,65 @@ export function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) 
   return made as unknown as Field<never>;
 }
 
+export function unitText(unit: string): string {
+  return unit === "deg" ? "°" : unit;
+}
+
+/** The attributes that are masks of collision groups. */
+const MASKS = ["collision_group", "collision_mask"];
+
+function formatOf(name: string, range: AttributeEntry["range"]): NumberFormat {
+  if (MASKS.includes(name)) return GROUP_LIST;
+  return range && range[1] === null ? THRESHOLD : PLAIN;
+}
+
+/** A number; the protocol writes infinity as a word. */
+function attributeNumber(label: string, unit: string, { name, range }: AttributeEntry, commit: (value: AttributeValue) => void): Field<AttributeValue> {
+  const field = numberField(label, unit, (value) => commit(value === Infinity ? "infinity" : value), { format: formatOf(name, range) });
+  return { ...field, set: (next) => field.set(next === null ? null : toNumber(next)) };
+}
+
+function toNumber(value: AttributeValue): number {
+  return value === "infinity" ? Infinity : value === "-infinity" ? -Infinity : Number(value);
+}
+
 /** A symmetric tensor, in the server's order: xx, yy, zz and, below these, xy, xz, yz. */
-function tensorField(label: string, unit: string, commit: (value: number[]) => void): Field<readonly number[]> {
-  let diagonal: readonly number[] = [0, 0, 0];
-  let mixed: readonly number[] = [0, 0, 0];
-  const send = (): void => commit([...diagonal, ...mixed]);
-  const upper = vectorField(["xx", "yy", "zz"].map((part) => `${label} ${part}`), unit, (value) => ((diagonal = value), send()));
-  const lower = vectorField(["xy", "xz", "yz"].map((part) => `${label} ${part}`), unit, (value) => ((mixed = value), send()));
+function tensorField(label: string, unit: string, commit: (typed: (number | null)[]) => void): Field<Components> {
+  const none = [null, null, null];
+  const upper = vectorField(["xx", "yy", "zz"].map((part) => `${label} ${part}`), unit, (typed) => commit([...typed, ...none]));
+  const lower = vectorField(["xy", "xz", "yz"].map((part) => `${label} ${part}`), unit, (typed) => commit([...none, ...typed]));
   return {
     root: element("span", { class: "tensor" }, upper.root, lower.root),
     setError: upper.setError,
     set(next) {
-      if (next) {
-        diagonal = next.slice(0, 3);
-        // Products of inertia of a symmetric body are zero but for rounding.
-        const largest = Math.max(...diagonal.map(Math.abs));
-        mixed = next.slice(3, 6).map((part) => (Math.abs(part) < NOISE * largest ? 0 : part));
-      }
-      upper.set(next && diagonal);
-      lower.set(next && mixed);
+      const diagonal = next?.slice(0, 3) ?? none;
+      // Products of inertia of a symmetric body are zero but for rounding.
+      const least = NOISE * Math.max(...diagonal.map((part) => Math.abs(part ?? 0)));
+      upper.set(diagonal);
+      lower.set(next?.slice(3, 6).map((part) => (part !== null && Math.abs(part) < least ? 0 : part)) ?? none);
     },
   };
 }
 
 function intervalText(entry: AttributeEntry): string {
-  if (entry.low === null || entry.high === null || entry.low === undefined || entry.high === undefined) return "";
+  if (typeof entry.low !== "number" || typeof entry.high !== "number") return "";
   // Bounds are estimates: three significant digits are enough.
   const text = (bound: number) => numberText(Number(bound.toPrecision(3)));
   return `${text(entry.low)} … ${text(entry.high)}`;
 }
 
-function rangeText({ range, unit }: AttributeEntry): string {
-  if (!range) return "";
-  const [low, high] = range.map((bound) => (bound === null ? "…" : numberText(bound)));
-  return `\nFrom ${low} to ${high}${unit && unit !== "1" ? ` ${unit}` : ""}`;
+function rangeText({ name, range, unit }: AttributeEntry): string {
+  if (!range || MASKS.includes(name)) return "";
+  const [low, high] = range.map((bound) => (bound === null ? null : numberText(bound)));
+  const behind = unit && unit !== "1" ? ` ${unitText(unit)}` : "";
+  if (low === null || high === null) return low === null ? (high === null ? "" : `\nAt most ${high}${behind}`) : `\nAt least ${low}${behind}`;
+  return `\nFrom ${low} to ${high}${behind}`;
 }
 
-export function valueText(value: AttributeValue): string {
-  if (typeof value === "number") return numberText(value);
+/** The value of the attribute of this name, for people. */
+export function valueText(value: AttributeValue, name: string): string {
+  if (typeof value === "number") return formatOf(name, null).write(value);
   if (Array.isArray(value)) return value.map(numberText).join(", ");
-  return String(value);
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  return value === "infinity" ? "never" : value === "" ? "not known" : wordText(value);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { AttributeEntry, AttributeValue } from "../connection/messages";
+import type { AttributeEdit, AttributeEntry, AttributeValue } from "../connection/messages";
 import type { Parts } from "../parts";
 
 /** Of a larger selection only so many entities are asked for, because asking for all would take long. */
@@ -11,7 +11,8 @@ export interface AttributeSubject {
   readonly id: string;
   /** The attributes of each entity; the note says what could not be loaded. */
   load(): Promise<{ sets: AttributeEntry[][]; note: string }>;
-  set(name: string, value: AttributeValue): Promise<unknown>;
+  /** Components of a vector or tensor that are null stay as they are in each entity. */
+  set(name: string, value: AttributeEdit): Promise<unknown>;
   reset(name: string): Promise<unknown>;
   /** Keys of the catalogue's models that the entities have; empty where one of them has no model. */
   models(): string[];
@@ -38,7 +39,7 @@ export class SelectedEntities implements AttributeSubject {
     };
   }
 
-  set(name: string, value: AttributeValue): Promise<unknown> {
+  set(name: string, value: AttributeEdit): Promise<unknown> {
     return this.parts.server.request("entity.set_attribute", { indices: this.indices, name, value });
   }
 
@@ -71,8 +72,9 @@ export class CatalogueModel implements AttributeSubject {
     }
   }
 
-  set(name: string, value: AttributeValue): Promise<unknown> {
-    return this.parts.server.request("catalog.set_attribute", { key: this.key, name, value });
+  set(name: string, value: AttributeEdit): Promise<unknown> {
+    // Of a single model every component is known.
+    return this.parts.server.request("catalog.set_attribute", { key: this.key, name, value: value as AttributeValue });
   }
 
   reset(name: string): Promise<unknown> {

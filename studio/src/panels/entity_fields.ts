@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
-import { Color, Euler, Matrix4, Quaternion, Vector3 } from "three";
-import type { NewEntity, PoseEdit } from "../connection/messages";
+import { Color } from "three";
+import type { NewEntity } from "../connection/messages";
+import { commonComponents, withTyped } from "../document/components";
 import { nameOf } from "../document/scene_document";
 import type { Entity, Shape, ShapeOfLengths, Vector } from "../connection/scene_types";
 import type { Parts } from "../parts";
+import { icon } from "../tools/icons";
+import { allLocked, toggleLock, withoutLocked } from "../tools/locks";
+import { presentPose, rotationOfDegrees } from "../tools/typed_poses";
 import { colorOf } from "../view/entity_view";
 import { fieldsOf, isOfLengths, shownLength, withShownLength } from "../view/shapes_of_lengths";
 import { element, show } from "./element";
-import { type Field, numberField, textField, truthField, vectorField } from "./fields";
+import { type Components, type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { modelCard } from "./model_card";
 
-const DEGREE = Math.PI / 180;
 const LIVE_EVERY_MS = 200;
 
 type Row = { root: HTMLElement; update(entities: Entity[]): void };
@@ -21,7 +24,7 @@ export class EntityFields {
   private rows: Row[] = [];
   private lastLive = 0;
 
-  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "models" | "entities" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "server" | "notices" | "document" | "playback" | "selection" | "models" | "entities" | "view">) {
     parts.selection.changed.on(() => this.rebuild());
     parts.document.changed.on(() => this.update());
     parts.entities.loaded.on(() => this.update());
@@ -48,9 +51,11 @@ export class EntityFields {
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
     const card = single?.model ? modelCard(this.parts, single.model) : null;
-    const head = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
+    const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
+    const padlock = this.padlock();
+    this.rows.push(padlock);
     this.root.replaceChildren(
-      head,
+      element("div", { class: "entity-head" }, title, padlock.root),
       ...(card ? [card] : []),
       element("details", { class: "group", open: true }, element("summary", {}, "Place and size"), ...shown.map((row) => row.root)),
       element("details", { class: "group" }, element("summary", {}, "Start and forces"), ...start.map((row) => row.root)),
@@ -63,6 +68,24 @@ export class EntityFields {
     if (entities.length > 0) for (const row of this.rows) row.update(entities);
   }
 
+  private padlock(): Row {
+    const { parts } = this;
+    const button = element("button", { class: "plain padlock", "data-testid": "entity-lock", onclick: () => toggleLock(parts, parts.selection.indices) });
+    let shown: boolean | null = null;
+    return {
+      root: button,
+      update: () => {
+        const locked = allLocked(parts, parts.selection.indices);
+        if (locked === shown) return;
+        shown = locked;
+        button.replaceChildren(icon(locked ? "lock" : "unlock"));
+        button.setAttribute("aria-pressed", String(locked));
+        button.setAttribute("aria-label", locked ? "Unlock" : "Lock");
+        button.title = locked ? "Locked: keeps its place, size and existence. Click to unlock (L)" : "Lock it where it is (L)";
+      },
+    };
+  }
+
   private nameRow(): Row {
     const field = textField("Name", (name) => this.change({ name }));
     field.root.classList.add("name-field");
@@ -71,21 +94,12 @@ export class EntityFields {
   }
 
   private poseRows(): Row[] {
-    const position = vectorField(["Position x", "Position y", "Position z"], "m", (value) => this.move(value as Vector, null), 0.01);
-    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (value) => this.move(null, value as Vector), 1);
-    const matrix = new Matrix4();
-    const [at, turn, size, euler] = [new Vector3(), new Quaternion(), new Vector3(), new Euler()];
+    const position = vectorField(["Position x", "Position y", "Position z"], "m", (typed) => this.move("position", typed), 0.01);
+    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (typed) => this.move("degrees", typed), 1);
     const update = (entities: Entity[]): void => {
-      const last = entities.at(-1)!;
-      if (entities.length > 1 || !this.parts.entities.matrixOf(last.index, performance.now(), matrix)) {
-        position.set(null);
-        rotation.set(null);
-        return;
-      }
-      matrix.decompose(at, turn, size);
-      euler.setFromQuaternion(turn, "YXZ");
-      position.set(at.toArray().map(rounded));
-      rotation.set([euler.x, euler.y, euler.z].map((angle) => Math.round((angle / DEGREE) * 100) / 100));
+      const poses = entities.map((entity) => presentPose(this.parts, entity));
+      position.set(commonComponents(poses.map((pose) => pose.position.map((length) => rounded(length, 1e4)))));
+      rotation.set(commonComponents(poses.map((pose) => pose.degrees.map((angle) => rounded(angle, 100)))));
     };
     return [
       { root: row("Position", position.root), update },
@@ -93,15 +107,16 @@ export class EntityFields {
     ];
   }
 
-  private move(position: Vector | null, degrees: Vector | null): void {
-    const edit: Omit<PoseEdit, "index"> = {};
-    if (position) edit.position = position;
-    if (degrees) {
-      const [x, y, z] = degrees.map((angle) => angle * DEGREE) as Vector;
-      edit.rotation = new Quaternion().setFromEuler(new Euler(x, y, z, "YXZ")).toArray() as [number, number, number, number];
-    }
-    const poses = this.parts.selection.indices.map((index) => ({ index, ...edit }));
-    void this.parts.server.command("entity.transform", { poses });
+  /** Changes the typed components of all poses; in the others each entity keeps its own. */
+  private move(part: "position" | "degrees", typed: Components): void {
+    const { parts } = this;
+    const poses = withoutLocked(parts, parts.selection.indices).flatMap((index) => {
+      const entity = parts.document.entity(index);
+      if (!entity) return [];
+      const next = withTyped(presentPose(parts, entity)[part], typed);
+      return [part === "position" ? { index, position: next as Vector } : { index, rotation: rotationOfDegrees(next) }];
+    });
+    if (poses.length > 0) void parts.server.command("entity.transform", { poses });
   }
 
   /** The lengths of a primitive, as full widths and heights. */
@@ -109,19 +124,20 @@ export class EntityFields {
     if (!isOfLengths(shape)) return [];
     return fieldsOf(shape).map((length) => {
       const present = () => (this.entities()[0]?.shape ?? shape) as ShapeOfLengths;
-      const put = (shown: number | Vector) => this.change({ shape: withShownLength(present(), length, shown) });
+      const put = (shown: number | Vector) => this.resize({ shape: withShownLength(present(), length, shown) });
       const shown = (entity: Entity) => shownLength(entity.shape as ShapeOfLengths, length);
       if (length.each) {
-        const field = vectorField(length.each, "m", (value) => put(value as Vector), 0.01);
+        const own = () => shownLength(present(), length) as Vector;
+        const field = vectorField(length.each, "m", (typed) => put(withTyped(own(), typed) as Vector), 0.01);
         return { root: row(length.label, field.root), update: ([entity]) => field.set(shown(entity!) as Vector) };
       }
-      const field = numberField(length.label, "m", put, 0.01);
+      const field = numberField(length.label, "m", put, { step: 0.01 });
       return { root: row(length.label, field.root), update: ([entity]) => field.set(shown(entity!) as number) };
     });
   }
 
   private scaleRow(): Row {
-    const field = numberField("Scale", "", (scale) => this.change({ scale }), 0.05);
+    const field = numberField("Scale", "", (scale) => this.resize({ scale }), { step: 0.05 });
     return { root: row("Scale", field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
   }
 
@@ -138,8 +154,11 @@ export class EntityFields {
 
   private startRows(): Row[] {
     const vector = (label: string, unit: string, name: "linear_velocity" | "angular_velocity" | "force" | "torque"): Row => {
-      const field = vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (value) => this.change({ [name]: value as Vector }));
-      return bound(label, field, (entity) => entity[name] ?? [0, 0, 0]);
+      const own = (entity: Entity): Vector => entity[name] ?? [0, 0, 0];
+      const field = vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (typed) =>
+        this.changeEach(this.entities(), (entity) => ({ [name]: withTyped(own(entity), typed) })),
+      );
+      return { root: row(label, field.root), update: (entities) => field.set(commonComponents(entities.map(own))) };
     };
     const truth = (label: string, name: "enabled" | "start_asleep" | "continuous", standard: boolean): Row => {
       const field = truthField(label, (value) => this.change({ [name]: value }));
@@ -157,9 +176,19 @@ export class EntityFields {
   }
 
   private change(entity: NewEntity): void {
+    this.changeEach(this.entities(), () => entity);
+  }
+
+  /** Changes the size, which locked entities keep. */
+  private resize(entity: NewEntity): void {
+    const free = new Set(withoutLocked(this.parts, this.parts.selection.indices));
+    this.changeEach(this.entities().filter(({ index }) => free.has(index)), () => entity);
+  }
+
+  private changeEach(entities: Entity[], changed: (entity: Entity) => NewEntity): void {
     // One undo takes back the change of all entities.
     const merge = `fields-${Date.now()}`;
-    for (const index of this.parts.selection.indices) void this.parts.server.command("entity.update", { index, entity, merge });
+    for (const entity of entities) void this.parts.server.command("entity.update", { index: entity.index, entity: changed(entity), merge });
   }
 }
 
@@ -178,6 +207,7 @@ function common<Value>(entities: Entity[], read: (entity: Entity) => Value): Val
   return entities.every((entity) => JSON.stringify(read(entity)) === text) ? first : null;
 }
 
-function rounded(length: number): number {
-  return Math.round(length * 1e4) / 1e4;
+/** Rounded to so many parts of one; without a negative zero. */
+function rounded(value: number, parts: number): number {
+  return Math.round(value * parts) / parts + 0;
 }

@@ -1,24 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { element } from "./element";
-
-/** Beside numbers of size one, smaller values are rounding errors and shown as 0. */
-export const NOISE = 1e-6;
-
-/** A number for people: five significant digits, without rounding errors; whole numbers in full. */
-export function numberText(value: number): string {
-  if (!Number.isFinite(value)) return value > 0 ? "∞" : value < 0 ? "-∞" : "?";
-  if (value === 0) return "0";
-  const size = Math.abs(value);
-  if (Number.isInteger(value) && size < 1e10) return String(value);
-  if (size < 1e-4 || size >= 1e6) return value.toExponential(3).replace(/\.?0+e/, "e").replace("e+", "e");
-  return String(Number(value.toPrecision(5)));
-}
-
-/** Reads a typed number; a comma counts as the decimal point. NaN where the text is no number. */
-export function readNumber(text: string): number {
-  const plain = text.trim().replace(",", ".").replace("∞", "Infinity");
-  return plain === "" ? NaN : Number(plain);
-}
+import { NOISE, type NumberFormat, PLAIN } from "./number_text";
+import { wordText } from "./words";
 
 export interface Field<Value> {
   root: HTMLElement;
@@ -28,26 +11,39 @@ export interface Field<Value> {
   setError(reason: string | null): void;
 }
 
-/** One number. Enter or leaving the field commits, Escape restores, the arrow keys change by 1 % or by `step`. */
-export function numberField(label: string, unit: string, commit: (value: number) => void, step?: number): Field<number> {
+/** A vector of a field: null where several entities differ in a component, and, of what was typed, for what stays as it is. */
+export type Components = readonly (number | null)[];
+
+interface NumberOptions {
+  /** By how much the arrow keys change the number; by 1 % where it is missing. */
+  step?: number | undefined;
+  format?: NumberFormat;
+  /** A word in the box, such as x. */
+  mark?: string;
+}
+
+/** One number. Enter or leaving the field commits, Escape restores, the arrow keys change by 1 % or by a step. */
+export function numberField(label: string, unit: string, commit: (value: number) => void, { step, format = PLAIN, mark }: NumberOptions = {}): Field<number> {
   let shown = "";
   let value: number | null = null;
+  const hasUnit = unit !== "" && unit !== "1";
   const input = element("input", {
     type: "text",
-    inputmode: "decimal",
+    inputmode: format === PLAIN ? "decimal" : "text",
     class: "number",
-    "aria-label": unit && unit !== "1" ? `${label}, ${unit}` : label,
+    "aria-label": hasUnit ? `${label}, ${unit}` : label,
     autocomplete: "off",
     spellcheck: "false",
     title: `${label}\nArrow keys: a little more or less, with Shift ten times that`,
   });
-  const root = element("span", { class: "field" }, input, unit && unit !== "1" ? element("span", { class: "unit" }, unit) : null);
+  const behind = hasUnit ? element("span", { class: "unit" }, unit) : null;
+  const root = element("span", { class: "field" }, mark ? element("span", { class: "mark", "aria-hidden": "true" }, mark) : null, input, behind);
 
   const setError = (reason: string | null): void => markError(root, input, reason);
   const take = (): void => {
     if (input.value === shown) return;
-    const typed = readNumber(input.value);
-    if (Number.isNaN(typed)) return setError("This is not a number");
+    const typed = format.read(input.value);
+    if (Number.isNaN(typed)) return setError(format.expected);
     setError(null);
     shown = input.value;
     value = typed;
@@ -62,10 +58,10 @@ export function numberField(label: string, unit: string, commit: (value: number)
     } else if (event.key === "Enter") {
       take();
       input.select();
-    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && value !== null) {
+    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && value !== null && Number.isFinite(value)) {
       event.preventDefault();
       const by = (step ?? Math.max(Math.abs(value) * 0.01, 1e-4)) * (event.key === "ArrowUp" ? 1 : -1) * (event.shiftKey ? 10 : 1);
-      input.value = numberText(value + by);
+      input.value = format.write(value + by);
       take();
     }
   });
@@ -75,26 +71,22 @@ export function numberField(label: string, unit: string, commit: (value: number)
     set(next) {
       if (document.activeElement === input && input.value !== shown) return;
       value = next;
-      const text = next === null ? "" : numberText(next);
+      const text = next === null ? "" : format.write(next);
       // The refused text has been replaced, so its error is removed.
       if (text !== shown) setError(null);
       shown = text;
       input.value = shown;
       input.placeholder = next === null ? "differs" : "";
+      // Words such as "never" have no unit.
+      behind?.classList.toggle("of-word", /^[a-z]/.test(text));
     },
   };
 }
 
-/** Numbers side by side, such as x y z. */
-export function vectorField(labels: readonly string[], unit: string, commit: (value: number[]) => void, step?: number): Field<readonly number[]> {
-  let value: number[] | null = null;
+/** Numbers side by side, such as x y z. Commits only the typed one; the others are null. */
+export function vectorField(labels: readonly string[], unit: string, commit: (typed: Components) => void, step?: number): Field<Components> {
   const fields = labels.map((label, at) =>
-    numberField(label, "", (typed) => {
-      const next = [...(value ?? labels.map(() => 0))];
-      next[at] = typed;
-      value = next;
-      commit(next);
-    }, step),
+    numberField(label, "", (typed) => commit(labels.map((_, each) => (each === at ? typed : null))), { step, mark: markOf(label) }),
   );
   const root = element("span", { class: "field vector" }, ...fields.map((field) => field.root));
   if (unit && unit !== "1") root.append(element("span", { class: "unit" }, unit));
@@ -102,11 +94,19 @@ export function vectorField(labels: readonly string[], unit: string, commit: (va
     root,
     setError: (reason) => fields[0]!.setError(reason),
     set(next) {
-      value = next === null ? null : [...next];
-      const least = NOISE * Math.max(0, ...(next ?? []).map(Math.abs));
-      fields.forEach((field, at) => field.set(next === null ? null : Math.abs(next[at] ?? 0) < least ? 0 : next[at]!));
+      const least = NOISE * Math.max(0, ...(next ?? []).map((part) => Math.abs(part ?? 0)));
+      fields.forEach((field, at) => {
+        const part = next?.[at] ?? null;
+        field.set(part !== null && Math.abs(part) < least ? 0 : part);
+      });
     },
   };
+}
+
+/** The last word of a label where it is short, such as x or xy; else its first letter. */
+function markOf(label: string): string {
+  const last = label.slice(label.lastIndexOf(" ") + 1);
+  return last.length <= 2 ? last : last[0]!.toLowerCase();
 }
 
 /** Yes or no. */
@@ -126,21 +126,22 @@ export function truthField(label: string, commit: (value: boolean) => void): Fie
 
 /** One of the choices, or any word where there are none. */
 export function wordField(label: string, choices: readonly string[], commit: (value: string) => void): Field<string> {
-  if (choices.length === 0) return textField(label, commit);
-  const select = element("select", { "aria-label": label }, ...choices.map((choice) => element("option", { value: choice }, choice.replaceAll("_", " "))));
+  if (choices.length === 0) return textField(label, commit, "not known");
+  const select = element("select", { "aria-label": label }, ...choices.map((choice) => element("option", { value: choice }, wordText(choice))));
   select.addEventListener("change", () => commit(select.value));
   const root = element("span", { class: "field" }, select);
   return {
     root,
     setError: (reason) => markError(root, select, reason),
     set(next) {
-      if (next !== null && !choices.includes(next)) select.append(element("option", { value: next }, next));
+      if (next !== null && !choices.includes(next)) select.append(element("option", { value: next }, wordText(next)));
       select.value = next ?? "";
     },
   };
 }
 
-export function textField(label: string, commit: (value: string) => void): Field<string> {
+/** Any text; `empty` is shown where there is none. */
+export function textField(label: string, commit: (value: string) => void, empty = ""): Field<string> {
   const input = element("input", { type: "text", "aria-label": label, autocomplete: "off" });
   let shown = "";
   input.addEventListener("change", () => commit((shown = input.value)));
@@ -156,7 +157,7 @@ export function textField(label: string, commit: (value: string) => void): Field
       if (document.activeElement === input && input.value !== shown) return;
       shown = next ?? "";
       input.value = shown;
-      input.placeholder = next === null ? "differs" : "";
+      input.placeholder = next === null ? "differs" : empty;
     },
   };
 }

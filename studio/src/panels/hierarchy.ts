@@ -2,6 +2,8 @@
 import { nameOf } from "../document/scene_document";
 import type { Entity } from "../connection/scene_types";
 import type { Parts } from "../parts";
+import { icon } from "../tools/icons";
+import { setLocked } from "../tools/locks";
 import { element } from "./element";
 
 /** The list shows no more rows than this; the filter finds the rest. */
@@ -15,7 +17,7 @@ export class Hierarchy {
   private readonly filter = element("input", { type: "search", placeholder: "Find in the scene", "aria-label": "Find in the scene", oninput: () => this.fill() });
   private timer = 0;
 
-  constructor(private readonly parts: Pick<Parts, "document" | "selection" | "entities" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "entities" | "view">) {
     this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
     parts.document.changed.on(() => {
       clearTimeout(this.timer);
@@ -55,6 +57,25 @@ export class Hierarchy {
       },
       element("span", {}, nameOf(entity)),
       element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
+      parts.document.spawned.has(entity.index) ? null : this.padlock(entity),
+    );
+  }
+
+  /** Shown on locked entities, and under the pointer on the others. */
+  private padlock({ index, locked = false, ...entity }: Entity): HTMLElement {
+    const name = nameOf({ index, ...entity });
+    return element(
+      "button",
+      {
+        class: "plain padlock",
+        title: locked ? "Locked: it keeps its place, size and existence. Click to unlock (L)" : "Lock it where it is (L)",
+        "aria-label": locked ? `Unlock ${name}` : `Lock ${name}`,
+        "aria-pressed": String(locked),
+        "data-testid": `lock-${index}`,
+        onclick: (event: MouseEvent) => (event.stopPropagation(), setLocked(this.parts, [index], !locked)),
+        onkeydown: (event: KeyboardEvent) => event.key === "Enter" && event.stopPropagation(),
+      },
+      icon(locked ? "lock" : "unlock"),
     );
   }
 

@@ -2,7 +2,7 @@
 import { reasonText } from "../connection/connection";
 import type { ChangeBatch, ModelSummary } from "../connection/messages";
 import type { Parts } from "../parts";
-import { valueText } from "./attribute_row";
+import { unitText, valueText } from "./attribute_row";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 
@@ -57,7 +57,7 @@ function row(parts: Pick<Parts, "server">, batch: ChangeBatch, ofOne: boolean): 
       "li",
       {},
       element("span", { class: "history-model" }, ofOne ? change.label : `${change.name || change.key}: ${change.label}`),
-      element("span", {}, `${text(change.before, change.unit)} → ${text(change.after, change.unit)}`),
+      element("span", {}, `${text(change, "before")} → ${text(change, "after")}`),
     ),
   );
   if (batch.values > values.length && !ofOne) values.push(element("li", { class: "note" }, `and ${(batch.values - values.length).toLocaleString("en")} more values`));
@@ -85,7 +85,7 @@ function title(batch: ChangeBatch): string {
   if (batch.undoes !== null) return `${batch.command === "undo" ? "Took back" : "Did again"}: ${labels} of ${of}`;
   if (batch.command.startsWith("reset")) return `Reset ${labels} of ${of}`;
   const same = batch.changes.every(({ after, attribute }) => attribute === first.attribute && JSON.stringify(after) === JSON.stringify(first.after));
-  return `Set ${labels} of ${of}${same ? ` to ${text(first.after, first.unit)}` : ""}`;
+  return `Set ${labels} of ${of}${same ? ` to ${text(first, "after")}` : ""}`;
 }
 
 /** The name that the user entered in the Studio; else the person's login name and the program. */
@@ -94,7 +94,9 @@ function who({ person, session }: ChangeBatch): string {
   return session ? `${person} (${session})` : person;
 }
 
-function text(value: ChangeBatch["changes"][number]["before"], unit: string): string {
+function text(change: ChangeBatch["changes"][number], when: "before" | "after"): string {
+  const value = change[when];
   if (value === null) return "automatic";
-  return unit && unit !== "1" ? `${valueText(value)} ${unit}` : valueText(value);
+  const unit = unitText(change.unit);
+  return unit && unit !== "1" && value !== "infinity" ? `${valueText(value, change.attribute)} ${unit}` : valueText(value, change.attribute);
 }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 import type { SceneSettings } from "../connection/scene_types";
+import { withTyped } from "../document/components";
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
-import { numberField, textField, truthField, vectorField } from "./fields";
+import { type Components, numberField, textField, truthField, vectorField } from "./fields";
 
 /** The scene's own settings, shown while nothing is selected. */
 export class SceneFields {
   readonly root: HTMLElement;
   private readonly title = textField("Title", (title) => this.set({ title }));
-  private readonly gravity = vectorField(["Gravity x", "Gravity y", "Gravity z"], "m/s²", (value) => this.set({ gravity: value as SceneSettings["gravity"] }));
+  private readonly gravity = vectorField(["Gravity x", "Gravity y", "Gravity z"], "m/s²", (typed) => this.setVector("gravity", typed));
   private readonly timeStep = numberField("Time step", "s", (time_step) => this.set({ time_step }));
-  private readonly substeps = numberField("Substeps", "", (substeps) => this.set({ substeps }), 1);
+  private readonly substeps = numberField("Substeps", "", (substeps) => this.set({ substeps }), { step: 1 });
   private readonly sleeping = truthField("Sleeping", (sleeping) => this.set({ sleeping }));
-  private readonly wind = vectorField(["Wind x", "Wind y", "Wind z"], "m/s", (value) => this.set({ wind: value as SceneSettings["wind"] }));
+  private readonly wind = vectorField(["Wind x", "Wind y", "Wind z"], "m/s", (typed) => this.setVector("wind", typed));
   private readonly gustiness = numberField("Gustiness", "", (gustiness) => this.set({ gustiness }));
   private readonly gustTime = numberField("Gust time", "s", (gust_time) => this.set({ gust_time }));
   private readonly airDensity = numberField("Air density", "kg/m³", (air_density) => this.set({ air_density }));
@@ -51,6 +52,10 @@ export class SceneFields {
     parts.selection.changed.on(() => this.update());
     parts.picked.changed.on(() => this.update());
     this.update();
+  }
+
+  private setVector(name: "gravity" | "wind", typed: Components): void {
+    this.set({ [name]: withTyped(this.parts.document.settings[name], typed) });
   }
 
   private set(settings: Partial<SceneSettings> & { title?: string }): void {

@@ -5,13 +5,14 @@ import type { Shape, Vector } from "../connection/scene_types";
 import { Signal } from "../signal";
 import type { Parts } from "../parts";
 import { isOfLengths, scaledLengths } from "../view/shapes_of_lengths";
+import { unlocked } from "./locks";
 import { PoseDrag } from "./poses";
 
 export type Tool = "select" | "move" | "rotate" | "scale";
 
 const ONE = new Vector3(1, 1, 1);
 
-/** The handles of the move, rotate and scale tools; they act on the whole selection about its last entity. */
+/** The handles of the move, rotate and scale tools; they act on all of the selection that is not locked, about the last entity of it. */
 export class Gizmo {
   readonly changed = new Signal<void>();
   tool: Tool = "select";
@@ -66,8 +67,12 @@ export class Gizmo {
     this.parts.view.invalidate();
   }
 
+  private movable(): number[] {
+    return unlocked(this.parts, this.parts.selection.indices);
+  }
+
   private attach(): void {
-    const drawn = this.parts.selection.indices.some((index) => this.parts.entities.drawableOf(index));
+    const drawn = this.movable().some((index) => this.parts.entities.drawableOf(index));
     if (this.controls.dragging) return;
     if (this.tool === "select" || !drawn) {
       this.controls.detach();
@@ -84,7 +89,7 @@ export class Gizmo {
 
   /** Keeps the handles at the last selected entity while it moves. */
   private place(now: number): void {
-    const last = this.parts.selection.indices.at(-1);
+    const last = this.movable().at(-1);
     if (last === undefined || this.controls.dragging) return;
     if (!this.parts.entities.matrixOf(last, now, this.matrix)) return;
     this.matrix.decompose(this.pivot.position, this.pivot.quaternion, this.size);
@@ -93,7 +98,7 @@ export class Gizmo {
   }
 
   private begin(): void {
-    this.drag = new PoseDrag(this.parts, this.parts.selection.indices);
+    this.drag = new PoseDrag(this.parts, this.movable());
     this.before.compose(this.pivot.position, this.pivot.quaternion, ONE).invert();
   }
 

@@ -4,6 +4,7 @@ import { BodyState } from "../document/motion";
 import type { Parts } from "../parts";
 import type { Hit } from "../view/view";
 import type { Gizmo } from "./gizmo";
+import { isLocked, unlocked } from "./locks";
 import { PoseDrag } from "./poses";
 import { SpringLine } from "./spring_line";
 
@@ -92,6 +93,7 @@ export class Pointer {
   }
 
   private isMovable(index: number): boolean {
+    if (isLocked(this.parts, index)) return false;
     const shape = this.parts.document.entity(index)?.shape?.type;
     if (shape === "plane" || shape === "heightfield" || shape === "mesh") return false;
     return !this.parts.playback.playing || this.parts.motion.state(index) !== BodyState.still;
@@ -129,7 +131,7 @@ export class Pointer {
     const { selection } = this.parts;
     if (!selection.has(hit.index)) selection.set([hit.index]);
     const plane = new Plane(new Vector3(0, 1, 0), -hit.point.y);
-    this.gesture = { kind: "slide", plane, from: hit.point.clone(), drag: new PoseDrag(this.parts, selection.indices) };
+    this.gesture = { kind: "slide", plane, from: hit.point.clone(), drag: new PoseDrag(this.parts, unlocked(this.parts, selection.indices)) };
   }
 
   private slide(gesture: Extract<Gesture, { kind: "slide" }>, event: PointerEvent): void {
@@ -182,12 +184,12 @@ export class Pointer {
     frame.style.height = `${Math.abs(event.clientY - this.startY)}px`;
   }
 
-  /** Selects every entity whose centre lies in the rectangle, too. */
+  /** Selects every entity that is not locked and whose centre lies in the rectangle, too. */
   private chooseInBox(frame: HTMLElement): void {
     const { view, entities, document, selection } = this.parts;
     const box = frame.getBoundingClientRect();
     frame.remove();
-    const chosen = [...document.entities.keys()].filter((index) => {
+    const chosen = unlocked(this.parts, document.entities.keys()).filter((index) => {
       const bounds = entities.boundsOf([index], performance.now());
       if (bounds.isEmpty()) return false;
       const centre = bounds.getCenter(new Vector3());
