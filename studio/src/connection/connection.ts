@@ -26,6 +26,9 @@ export function reasonText(error: Error): string {
   return remedy ? `${why}. ${remedy}` : why;
 }
 
+/** So many commands are under way at most; the others wait here, in order, so that hundreds at once flood neither socket nor server. */
+const MOST_UNDER_WAY = 64;
+
 type Waiting = { resolve: (result: never) => void; reject: (error: Error) => void };
 
 /** The page's side of the socket worker: commands as promises, events and frames as signals; it reconnects without end. */
@@ -42,6 +45,7 @@ export class Connection {
 
   private readonly worker = new Worker(new URL("./socket_worker.ts", import.meta.url), { type: "module" });
   private readonly waiting = new Map<number, Waiting>();
+  private readonly queue: string[] = [];
   private nextId = 1;
   /** Sent with every request to a server that listens on more than this machine. */
   private readonly token = new URLSearchParams(location.search).get("token");
@@ -66,8 +70,14 @@ export class Connection {
     const id = this.nextId++;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject } as Waiting);
-      this.tell({ kind: "send", text: JSON.stringify({ id, command, params }) });
+      this.queue.push(JSON.stringify({ id, command, params }));
+      this.sendQueued();
     });
+  }
+
+  private sendQueued(): void {
+    const free = MOST_UNDER_WAY - (this.waiting.size - this.queue.length);
+    for (const text of this.queue.splice(0, Math.max(0, free))) this.tell({ kind: "send", text });
   }
 
   /** Call when the last frame has been used: the worker may send the next. */
@@ -89,6 +99,7 @@ export class Connection {
         this.isOpen = false;
         for (const { reject } of this.waiting.values()) reject(new NotConnected());
         this.waiting.clear();
+        this.queue.length = 0;
         this.closed.emit(message.reason);
         break;
       case "text":
@@ -114,6 +125,7 @@ export class Connection {
     }
     const waiting = this.waiting.get(message.id ?? 0);
     this.waiting.delete(message.id ?? 0);
+    this.sendQueued();
     if (message.ok) waiting?.resolve(message.result!);
     else waiting?.reject(new CommandRefused(message.error ?? { where: "", why: "The server gave no reason.", remedy: "" }));
   }

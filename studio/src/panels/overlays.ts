@@ -34,6 +34,7 @@ export class Overlays {
     parts.server.changed.on(update);
     parts.playback.changed.on(update);
     parts.document.changed.on(update);
+    parts.entities.loadingBegan.on(update);
     parts.entities.loaded.on(update);
     parts.preferences.changed.on(update);
     this.update();

@@ -10,13 +10,14 @@ export class StatusBar {
   readonly root: HTMLElement;
   private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
   private readonly work = element("span", { class: "cell", role: "status", "data-testid": "stat-work" });
+  private readonly loading = element("span", { class: "cell", role: "status", "data-testid": "stat-loading" });
   private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.parts.server.command("catalog.stop", {}) }, "Stop");
   private workTimer = 0;
   private readonly cells = new Map<string, HTMLElement>();
   private lastFrames = 0;
   private lastLook = performance.now();
 
-  constructor(private readonly parts: Pick<Parts, "server" | "playback" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "server" | "playback" | "entities" | "view">) {
     const cell = (name: string, title: string, kind = ""): HTMLElement => {
       const made = element("span", { class: `cell ${kind}`, title, "data-testid": `stat-${name}` });
       this.cells.set(name, made);
@@ -37,11 +38,15 @@ export class StatusBar {
       cell("rate", "Simulated seconds in one second of yours"),
       cell("fps", "Pictures drawn in the last second; idle: nothing changes, so nothing is drawn"),
       element("span", { class: "spacer" }),
+      this.loading,
       this.work,
       this.stop,
       this.connection,
     );
     this.showWork("", false);
+    this.showLoading();
+    parts.entities.loadingBegan.on(() => this.showLoading());
+    parts.entities.loaded.on(() => this.showLoading());
     parts.server.progress.on(({ client, done, total }) => this.showWork(`Changing models: ${done.toLocaleString("en")} of ${total.toLocaleString("en")}`, client === parts.server.client));
     parts.server.catalogChanged.on(() => this.showWork("", false));
     parts.playback.measured.on(() => this.update());
@@ -58,6 +63,12 @@ export class StatusBar {
     show(this.stop, mayStop);
     clearTimeout(this.workTimer);
     if (text) this.workTimer = window.setTimeout(() => this.showWork("", false), PROGRESS_SHOWN_MS);
+  }
+
+  private showLoading(): void {
+    const { loading, loadingOf } = this.parts.entities;
+    show(this.loading, loading > 0);
+    if (loading > 0) setText(this.loading, `Loading models: ${loadingOf - loading} of ${loadingOf}`);
   }
 
   private put(name: string, text: string): void {

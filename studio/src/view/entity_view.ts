@@ -21,6 +21,8 @@ const STILL_COLOR = new Color(0.115, 0.12, 0.13);
 const SAND = new Color(0.68, 0.5, 0.29);
 /** Colour of drops of a liquid that has no surface. */
 const DROPS = new Color(0.28, 0.5, 0.72);
+/** Nearer things than this, m, are not more urgent to load. */
+const NEAREST = 0.5;
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -40,6 +42,8 @@ export class EntityView {
   readonly group = new Group();
   /** A model was loaded, or failed to load. */
   readonly loaded = new Signal<void>();
+  /** The first of some models began to be loaded. */
+  readonly loadingBegan = new Signal<void>();
   readonly failed = new Signal<{ index: number; reason: string }>();
   /** Surfaces of liquids cannot be computed; liquids are drawn as drops from now on. */
   readonly surfacesLost = new Signal<string>();
@@ -56,6 +60,9 @@ export class EntityView {
   private readonly batches = new Map<string, Batch>();
   private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
   private pending = 0;
+  private begun = 0;
+  /** Where the eye is: what is large or near is loaded first. */
+  private readonly eye = new Vector3();
 
   private readonly position = new Vector3();
   private readonly rotation = new Quaternion();
@@ -82,9 +89,18 @@ export class EntityView {
     });
   }
 
-  /** Number of models that are being loaded. */
+  /** Number of entities whose models are being loaded. */
   get loading(): number {
     return this.pending;
+  }
+
+  /** How many of those that were begun since nothing was loading. */
+  get loadingOf(): number {
+    return this.begun;
+  }
+
+  lookFrom(eye: Vector3): void {
+    this.eye.copy(eye);
   }
 
   apply(changed: Changed): void {
@@ -216,15 +232,26 @@ export class EntityView {
 
   private async putModel(entity: Entity, key: string): Promise<void> {
     if (this.keep(entity, key)) return;
-    ++this.pending;
+    this.begin();
     try {
-      const drawable = await this.models.drawable(key);
+      const place = new Vector3(...positionOf(entity.pose));
+      const drawable = await this.models.drawable(key, (size) => (size * (entity.scale ?? 1)) / Math.max(place.distanceTo(this.eye), NEAREST));
       // The entity may have been removed or changed while the model was being loaded.
       if (this.document.entity(entity.index) === entity) this.join(entity, key, () => drawable);
     } catch (error) {
       if (this.document.entity(entity.index) === entity) this.join(entity, "placeholder", () => PLACEHOLDER);
       this.failed.emit({ index: entity.index, reason: (error as Error).message });
     }
+    this.end();
+  }
+
+  private begin(): void {
+    if (this.pending++ === 0) this.begun = 0;
+    ++this.begun;
+    if (this.pending === 1) this.loadingBegan.emit();
+  }
+
+  private end(): void {
     --this.pending;
     this.loaded.emit();
   }
@@ -233,7 +260,7 @@ export class EntityView {
     const { index, model, scale } = entity;
     const key = `soft ${index} ${scale ?? 1} ${model ?? shapeKey(entity.shape!)}`;
     if (this.softs.skinOf(index) && this.keep(entity, key)) return;
-    ++this.pending;
+    this.begin();
     try {
       const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
       const skin = await this.softs.dress(index, plain, scale ?? 1, this.quality);
@@ -249,8 +276,7 @@ export class EntityView {
     } catch (error) {
       this.failed.emit({ index, reason: (error as Error).message });
     }
-    --this.pending;
-    this.loaded.emit();
+    this.end();
   }
 
   /** Keeps an entity that looks as before in its batch; false where it looks different. */

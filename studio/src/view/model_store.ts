@@ -5,12 +5,19 @@ import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import type { Connection } from "../connection/connection";
 import type { ModelSummary } from "../connection/messages";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
+import { LoadQueue } from "./load_queue";
+
+/** So many models are asked about, and loaded, at once: enough to keep network and decoder busy, few enough to stay in order. */
+const MOST_ASKED = 16;
+const MOST_LOADED = 6;
 
 /** Cached models of the database: summaries by key, pictures by id and content. */
 export class ModelStore {
   private readonly loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
   private readonly summaries = new Map<string, Promise<ModelSummary>>();
   private readonly drawables = new Map<string, Promise<Drawable>>();
+  private readonly asking = new LoadQueue(MOST_ASKED);
+  private readonly loads = new LoadQueue(MOST_LOADED);
 
   constructor(private readonly connection: Connection) {}
 
@@ -25,14 +32,16 @@ export class ModelStore {
     else for (const key of keys) this.summaries.delete(key);
   }
 
-  summary(key: string): Promise<ModelSummary> {
-    return keep(this.summaries, key, async () => (await this.connection.request("catalog.model", { key })).model);
+  summary(key: string, urgency = () => Infinity): Promise<ModelSummary> {
+    return keep(this.summaries, key, () => this.asking.add(urgency, async () => (await this.connection.request("catalog.model", { key })).model));
   }
 
-  async drawable(key: string): Promise<Drawable> {
-    const model = await this.summary(key);
+  /** The picture of a model; `urgency`, of its size in metres, says which of many are loaded first. */
+  async drawable(key: string, urgency: (size: number) => number = () => Infinity): Promise<Drawable> {
+    const model = await this.summary(key, () => urgency(1));
     const path = `models/${model.id}/geometry.glb?v=${model.content_hash}`;
-    return keep(this.drawables, path, () => this.load(this.connection.address(path)));
+    const size = Math.hypot(...model.size);
+    return keep(this.drawables, path, () => this.loads.add(() => urgency(size), () => this.load(this.connection.address(path))));
   }
 
   thumbnail(model: ModelSummary): string {

@@ -81,7 +81,10 @@ export class View {
     this.collision = new CollisionOverlay(entities);
     this.pins = new PinMarks(entities.softs);
     this.scene.add(entities.group, this.outline.group, this.collision.group, this.debug.group, this.pins.points);
-    this.rig.changed.on(() => this.invalidate());
+    this.rig.changed.on(() => {
+      entities.lookFrom(this.rig.camera.position);
+      this.invalidate();
+    });
     entities.loaded.on(() => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
   }
