@@ -3,7 +3,6 @@ import "./style/theme.css";
 import "./style/layout.css";
 import "./style/panels.css";
 import { AttributeList } from "./panels/attribute_list";
-import { newScene, openScenes, saveAs } from "./panels/dialogs";
 import { DragIn } from "./panels/drag_in";
 import { element, show } from "./panels/element";
 import { EntityFields } from "./panels/entity_fields";
@@ -16,7 +15,11 @@ import { ModelFields } from "./panels/model_fields";
 import { openOptions } from "./panels/options_menu";
 import { Overlays } from "./panels/overlays";
 import { openPalette } from "./panels/palette";
+import { PeopleBar } from "./panels/people_bar";
+import { PeopleCards } from "./panels/people_cards";
 import { PinFields } from "./panels/pin_fields";
+import { offerRecoveries } from "./panels/recovery";
+import { newScene, openRecovery, openScenes, openVersions, saveAs, saveScene, saveVersion } from "./panels/scene_dialogs";
 import { SceneFields } from "./panels/scene_fields";
 import { StatusBar } from "./panels/status_bar";
 import { Toasts } from "./panels/toasts";
@@ -52,7 +55,10 @@ function start(): void {
 
   const actions: UserAction[] = makeActions(studio, gizmo, {
     scenes: () => void openScenes(studio),
+    save: () => void saveScene(studio),
     saveAs: () => saveAs(studio),
+    saveVersion: () => saveVersion(studio),
+    versions: () => void openVersions(studio),
     newScene: () => void newScene(studio),
     history: () => openHistory(studio),
     help: () => openHelp(studio, actions),
@@ -66,7 +72,7 @@ function start(): void {
 
   new Keyboard(studio, actions, pointer);
   new FileDrop(studio, () => browser.refresh());
-  const toolbar = new Toolbar(studio, gizmo, actions);
+  const toolbar = new Toolbar(studio, gizmo, actions, new PeopleBar(studio).root);
   const entityFields = new EntityFields(studio);
   const attributes = new AttributeList(studio);
   show(entityFields.root, false);
@@ -77,15 +83,17 @@ function start(): void {
     element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root),
     new StatusBar(studio).root,
   );
-  scene.append(new Overlays(studio).root);
+  scene.append(new Overlays(studio).root, new PeopleCards(studio).root);
   document.body.append(new Toasts(studio).root);
 
   const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));
   studio.historyWanted.on(() => openHistory(studio));
+  studio.recovered.on((found) => offerRecoveries(studio, found, (name) => void openRecovery(studio, name)));
   studio.preferences.changed.on(setTheme);
   setTheme();
   addEventListener("beforeunload", (event) => {
-    if (studio.document.unsaved) event.preventDefault();
+    // While others are here the scene stays open.
+    if (studio.document.unsaved && studio.people.others.length === 0) event.preventDefault();
   });
   void offerHeadset(studio.view, scene);
   offerTestHook(studio);

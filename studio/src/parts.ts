@@ -3,12 +3,15 @@ import type { Notices } from "./connection/notices";
 import type { ModelChoice } from "./connection/messages";
 import type { Server } from "./connection/server";
 import type { Motion } from "./document/motion";
+import type { People } from "./document/people";
 import type { PickedModel } from "./document/picked_model";
+import type { Opening } from "./document/opening";
 import type { Playback } from "./document/playback";
 import type { SceneDocument } from "./document/scene_document";
 import type { Selection } from "./document/selection";
 import type { Preferences } from "./preferences";
 import type { EntityView } from "./view/entity_view";
+import type { Framing } from "./view/framing";
 import type { ModelStore } from "./view/model_store";
 import type { View } from "./view/view";
 
@@ -28,9 +31,12 @@ export interface Parts {
   readonly playback: Playback;
   readonly selection: Selection;
   readonly picked: PickedModel;
+  readonly people: People;
+  readonly opening: Opening;
   found: Found;
   readonly motion: Motion;
   readonly models: ModelStore;
   readonly entities: EntityView;
   readonly view: View;
+  readonly framing: Framing;
 }

@@ -26,6 +26,10 @@ export interface PreferenceValues {
   recent: string[];
   /** This user's name in the history of changes; empty: a number. */
   userName: string;
+  /** The user was asked for a name when somebody else came. */
+  nameAsked: boolean;
+  /** Recovered scenes that the user wants to see later, by name: they are not offered again. */
+  recoveriesKept: string[];
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
 }
@@ -45,6 +49,8 @@ const DEFAULTS: PreferenceValues = {
   favourites: [],
   recent: [],
   userName: "",
+  nameAsked: false,
+  recoveriesKept: [],
   keys: {},
 };
 

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: MIT
-import { Box3, Vector3 } from "three";
 import { Connection } from "./connection/connection";
-import type { CatalogEvent, DocumentEvent, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import type { CatalogEvent, DocumentEvent, Hello, Recovery, ServerEvent, Simulation, Statistics } from "./connection/messages";
 import { Notices } from "./connection/notices";
 import type { Shape } from "./connection/scene_types";
 import { Server } from "./connection/server";
 import { Motion } from "./document/motion";
+import { Opening } from "./document/opening";
+import { People } from "./document/people";
+import { thisPerson } from "./document/person";
 import { PickedModel } from "./document/picked_model";
 import { Playback } from "./document/playback";
-import { positionOf, SceneDocument } from "./document/scene_document";
+import { SceneDocument } from "./document/scene_document";
 import { Selection } from "./document/selection";
 import type { Found, Parts } from "./parts";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
+import { PresenceSender } from "./tools/presence";
 import { EntityView } from "./view/entity_view";
+import { Framing } from "./view/framing";
 import { ModelStore } from "./view/model_store";
 import { drawsInSoftware } from "./view/software";
 import { View } from "./view/view";
@@ -34,6 +38,8 @@ export class Studio implements Parts {
   readonly playback = new Playback();
   readonly selection = new Selection();
   readonly picked = new PickedModel();
+  readonly people = new People();
+  readonly opening = new Opening();
   found: Found = { models: { all: true }, text: "all models" };
   readonly motion = new Motion();
   readonly models = new ModelStore(this.connection);
@@ -41,14 +47,38 @@ export class Studio implements Parts {
   readonly view: View;
   /** The user asked for the history of changes. */
   readonly historyWanted = new Signal<void>();
+  /** Unsaved work was found when this page connected. */
+  readonly recovered = new Signal<readonly Recovery[]>();
+  readonly framing: Framing;
+  private readonly person = thisPerson();
+  private wasGreeted = false;
   private collisionAsked = 0;
   private readonly onOneProcessor = ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname) && drawsInSoftware();
 
   constructor(canvas: HTMLCanvasElement) {
-    this.view = new View(canvas, this.motion, this.entities, this.preferences.get("quality"));
+    this.view = new View(canvas, this.motion, this.entities, this.people, this.preferences.get("quality"));
+    this.framing = new Framing(this.document, this.entities, this.view.rig);
+    new PresenceSender(this);
+    this.followPeople();
     this.followDocument();
     this.followConnection();
     this.followPreferences();
+  }
+
+  private followPeople(): void {
+    const { people, view, entities } = this;
+    people.changed.on(() => {
+      view.people.meet();
+      view.invalidate();
+    });
+    people.moved.on((client) => {
+      view.people.follow(client);
+      view.drawSoon();
+    });
+    // What is drawn otherwise has another outline.
+    this.document.changed.on(() => view.people.refresh());
+    entities.loaded.on(() => view.people.refresh());
+    entities.pointed.on(() => view.people.refresh());
   }
 
   private followDocument(): void {
@@ -114,7 +144,11 @@ export class Studio implements Parts {
       this.entities.forgetPoints();
       void this.greet();
     });
-    this.connection.closed.on(() => this.server.changed.emit());
+    this.connection.closed.on(() => {
+      this.opening.forget();
+      this.people.meet([]);
+      this.server.changed.emit();
+    });
     this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
     this.connection.event.on((event) => this.take(event));
     this.connection.debug.on((frame) => {
@@ -157,17 +191,26 @@ export class Studio implements Parts {
 
   /** After (re)connecting: loads the whole document and the present state of the simulation. */
   private async greet(): Promise<void> {
-    const hello = await this.server.command("hello", {});
+    const hello = await this.server.command("hello", { person: await this.person });
     if (!hello) return;
     this.server.meet(hello);
     if (this.preferences.get("userName")) void this.tellName();
     if (this.preferences.get("debug").length > 0) void this.askDebug();
     this.playback.simulation = hello.simulation;
+    const isSame = this.wasGreeted && this.document.name === hello.name && this.document.title === (hello.scene.title ?? "Untitled");
+    this.wasGreeted = true;
     this.document.reset(hello);
-    this.openCamera();
+    // After a lost connection the user goes on where they were.
+    if (!isSame) this.framing.open();
     this.retint();
+    this.meetPeople(hello);
     this.server.changed.emit();
     this.playback.changed.emit();
+  }
+
+  private meetPeople({ members = [], client, recovered = [] }: Hello): void {
+    this.people.meet(members, client);
+    if (recovered.length > 0) this.recovered.emit(recovered);
   }
 
   private async tellName(): Promise<void> {
@@ -218,6 +261,23 @@ export class Studio implements Parts {
       case "progress":
         this.server.progress.emit(event);
         break;
+      case "members":
+        this.people.meet(event.members);
+        break;
+      case "presence": {
+        const { event: _, client, ...presence } = event;
+        this.people.take(client, presence);
+        break;
+      }
+      case "history":
+        this.document.takeHistory(event);
+        break;
+      case "question":
+        this.opening.ask(event);
+        break;
+      case "question_over":
+        this.opening.end(event.question);
+        break;
       case "rope_broke":
         this.entities.redress(event.index);
         break;
@@ -241,7 +301,7 @@ export class Studio implements Parts {
       this.entities.forgetPoints();
     }
     this.document.apply(event);
-    if (isOther) this.openCamera();
+    if (isOther) this.framing.open();
   }
 
   private takeSimulation({ state, time, step }: Simulation): void {
@@ -262,20 +322,6 @@ export class Studio implements Parts {
     this.entities.tinted = !shown ? "off" : preferences.get("fullTint") ? "full" : "faint";
     this.entities.update(performance.now(), true);
     this.view.invalidate();
-  }
-
-  /** The box around all entities, with a margin; models that are still being loaded count as a point. */
-  private wholeScene(): Box3 {
-    const { entities } = this.document;
-    const bounds = this.entities.boundsOf(entities.keys(), performance.now());
-    for (const entity of entities.values()) if (entity.model) bounds.expandByPoint(new Vector3(...positionOf(entity.pose)));
-    return bounds.expandByScalar(0.5);
-  }
-
-  private openCamera(): void {
-    const { camera } = this.document;
-    if (camera) this.view.rig.place(camera.position, camera.target);
-    else this.view.rig.focus(this.wholeScene(), performance.now(), true);
   }
 }
 

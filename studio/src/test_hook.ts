@@ -30,6 +30,12 @@ export interface TestHook {
   /** Lines and points of each meaning (docs/protocol.md, "Debug frames") that are drawn. */
   debugCounts(): Record<number, { lines: number; points: number }>;
   pick(x: number, y: number): number | null;
+  /** Where the camera is and what it looks at. */
+  camera(): { position: number[]; target: number[] };
+  /** The scene's box as it is seen, as parts of the picture's width and height, without floors and walls. */
+  filled(): { width: number; height: number };
+  /** This page's number, and what it knows of the other members; `drawn`: they are in the picture. */
+  people(): { client: number; others: { client: number; name: string; color: string; drawn: boolean; presence: unknown }[] };
   /** Stops drawing, for screenshots; resume() starts it again. */
   halt(): void;
   resume(): void;
@@ -72,6 +78,18 @@ export function offerTestHook(studio: Studio): void {
     collisionParts: () => studio.view.collision.parts,
     debugCounts: () => studio.view.debug.counts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
+    camera: () => studio.view.rig.seen(),
+    filled: () => {
+      const { min, max } = studio.framing.contents();
+      const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((at) => studio.view.project(new Vector3(at & 1 ? max.x : min.x, at & 2 ? max.y : min.y, at & 4 ? max.z : min.z)));
+      const extent = (values: number[]) => Math.max(...values) - Math.min(...values);
+      const { width, height } = studio.view.canvas.getBoundingClientRect();
+      return { width: extent(corners.map(({ x }) => x)) / width, height: extent(corners.map(({ y }) => y)) / height };
+    },
+    people: () => ({
+      client: studio.server.client,
+      others: studio.people.others.map((member) => ({ ...member, drawn: studio.view.people.drawn.includes(member.client), presence: studio.people.presence(member.client) })),
+    }),
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),
   };

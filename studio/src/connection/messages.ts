@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
 import type { DebugName } from "./debug_frame";
-import type { Action, Entity, Joint, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
+import type { Action, Camera, Entity, Joint, Pose, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
 
 export interface ModelSummary {
   id: number;
@@ -89,9 +89,46 @@ export interface ChangeBatch {
 export interface SceneListing {
   name: string;
   title: string;
-  /** `recovery`: an autosave of a scene that was not saved. */
+  /** `recovery`: work that was not saved before its program ended or another scene was opened. */
   kind: "saved" | "recovery" | "demo";
   modified: string | null;
+  /** Of a recovery: how many edits it has. */
+  edits?: number;
+}
+
+/** Unsaved work that was found. */
+export interface Recovery {
+  name: string;
+  title: string;
+  modified: string | null;
+  edits: number;
+}
+
+/** A page that is connected; the colour is "#rrggbb". */
+export interface Member {
+  client: number;
+  name: string;
+  color: string;
+}
+
+export interface Hand {
+  hand: "left" | "right";
+  position: Vector;
+  rotation: Quaternion;
+  /** Index of the entity that it holds. */
+  holds?: number;
+}
+
+/** What a member looks at, points at, selects and holds. */
+export interface Presence {
+  selection?: number[];
+  camera?: Camera;
+  /** The point under the mouse; null: it is elsewhere. */
+  pointer?: { position: Vector } | null;
+  /** Of a headset. */
+  head?: Required<Pose> | null;
+  hands?: Hand[];
+  mode?: "page" | "headset";
 }
 
 export type SimulationState = "stopped" | "playing" | "paused";
@@ -146,10 +183,13 @@ export interface Hello {
   revision: number;
   simulation: Simulation;
   frame_version: number;
+  /** Labels of what this person can undo and redo. */
   undo: string | null;
   redo: string | null;
   unsaved: boolean;
   name: string;
+  members?: Member[];
+  recovered?: Recovery[];
   /** This client's number. */
   client: number;
   /** Entities that actions added to the running world, and those of the document that actions removed. */
@@ -169,9 +209,16 @@ export interface SimulationMesh {
   broken?: number[];
 }
 
+/** Of what opens another scene: where other members are asked first, who, and how many seconds they have; nothing is opened yet. */
+export interface Asked {
+  asked?: number[];
+  question?: number;
+  seconds?: number;
+}
+
 /** Parameters and result of each command. */
 export interface Commands {
-  hello: [Record<string, never>, Hello];
+  hello: [{ person?: string }, Hello];
   "catalog.search": [{ words?: string; category?: string; limit?: number; offset?: number }, { models: ModelSummary[]; total: number }];
   "catalog.categories": [Record<string, never>, { categories: { category: string; models: number }[] }];
   "catalog.model": [{ key: string }, { model: ModelSummary; attributes: AttributeEntry[] }];
@@ -185,9 +232,13 @@ export interface Commands {
   "catalog.history": [{ key?: string; before?: number; limit?: number; changes?: number }, { batches: ChangeBatch[] }];
   "catalog.stop": [Record<string, never>, unknown];
   "client.set_name": [{ name: string }, { session: string }];
-  "scene.new": [{ name?: string }, unknown];
-  "scene.load": [{ name: string } | { scene: unknown } | { text: string; file: string }, unknown];
-  "scene.save": [{ name?: string }, { name: string; path: string }];
+  "client.present": [Presence, unknown];
+  "scene.new": [{ name?: string; ask?: boolean }, Asked];
+  "scene.load": [({ name: string; version?: string } | { scene: unknown } | { text: string; file: string }) & { ask?: boolean }, Asked];
+  "scene.answer": [{ question: number; agrees: boolean }, unknown];
+  "scene.save": [{ name?: string; camera?: Camera; version?: string }, { name: string; path: string }];
+  "scene.versions": [{ name?: string }, { versions: { version: string; modified: string | null }[] }];
+  "scene.discard": [{ name: string }, unknown];
   "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
   "scene.settings": [Partial<SceneSettings> & { title?: string }, unknown];
   "entity.add": [{ entity: NewEntity; drop?: Ray }, { index: number }];
@@ -219,6 +270,7 @@ export interface Commands {
 export type DocumentChange =
   | { op: "reset"; scene: Scene }
   | { op: "entity"; entity: Entity }
+  | { op: "pose"; index: number; pose: Pose }
   | { op: "entity_removed"; index: number }
   | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string; camera?: Scene["camera"] | null } }
   | { op: "joint"; joint: Joint }
@@ -230,8 +282,6 @@ export interface DocumentEvent {
   event: "document";
   revision: number;
   changes: DocumentChange[];
-  undo: string | null;
-  redo: string | null;
   unsaved: boolean;
   /** Name under which the scene was saved; empty where it never was. */
   name: string;
@@ -252,6 +302,18 @@ export interface CatalogEvent {
   client: number | null;
 }
 
+/** Another member wants to open something: does this one agree? */
+export interface Question {
+  question: number;
+  client: number;
+  name: string;
+  /** Title of the scene that would be opened. */
+  title: string;
+  text: string;
+  /** Without an answer in this time, s, it is opened. */
+  seconds: number;
+}
+
 export interface Progress {
   client: number;
   done: number;
@@ -266,6 +328,11 @@ export type ServerEvent =
   | ({ event: "statistics" } & Statistics)
   | CatalogEvent
   | ({ event: "progress" } & Progress)
+  | { event: "members"; members: Member[] }
+  | ({ event: "presence"; client: number } & Presence)
+  | { event: "history"; undo: string | null; redo: string | null }
+  | ({ event: "question" } & Question)
+  | { event: "question_over"; question: number }
   | { event: "rope_broke"; index: number; segment: number; tension: number; position: Vector }
   | { event: "action"; name: string; id: number; sender: number; receiver: number }
   | { event: "message"; level: "info" | "warning" | "error"; text: string };

@@ -17,6 +17,8 @@ export interface Changed {
 /** The client's copy of the open scene. It changes only by the server's events. */
 export class SceneDocument {
   readonly changed = new Signal<Changed>();
+  /** What this person can undo and redo has changed. */
+  readonly historyChanged = new Signal<void>();
   readonly entities = new Map<number, Entity>();
   /** Entities that actions added to the running world; they are not in the document, and hide one of it with the same index. */
   readonly spawned = new Map<number, Entity>();
@@ -29,6 +31,7 @@ export class SceneDocument {
   title = "";
   description = "";
   name = "";
+  /** Labels of what this person can undo and redo; null: nothing. */
   undo: string | null = null;
   redo: string | null = null;
   unsaved = false;
@@ -43,6 +46,7 @@ export class SceneDocument {
     for (const entity of hello.spawned ?? []) this.spawned.set(entity.index, entity);
     for (const index of hello.despawned ?? []) this.absent.add(index);
     this.takeHeading(hello);
+    this.setHistory(hello);
     this.changed.emit({ ...nothingChanged(), all: true, settings: true, joints: true, actions: true });
   }
 
@@ -75,9 +79,18 @@ export class SceneDocument {
     this.changed.emit({ ...nothingChanged(), removed, entities: [...this.entities.keys()] });
   }
 
-  private takeHeading({ undo, redo, unsaved, name }: Pick<Hello, "undo" | "redo" | "unsaved" | "name">): void {
+  /** Sets what this person can undo and redo. */
+  takeHistory(history: Pick<Hello, "undo" | "redo">): void {
+    this.setHistory(history);
+    this.historyChanged.emit();
+  }
+
+  private setHistory({ undo, redo }: Pick<Hello, "undo" | "redo">): void {
     this.undo = undo ?? null;
     this.redo = redo ?? null;
+  }
+
+  private takeHeading({ unsaved, name }: Pick<Hello, "unsaved" | "name">): void {
     this.unsaved = unsaved ?? false;
     this.name = name ?? "";
   }
@@ -107,6 +120,13 @@ export class SceneDocument {
         this.entities.set(change.entity.index, change.entity);
         changed.entities.push(change.entity.index);
         break;
+      case "pose": {
+        const moved = this.entities.get(change.index);
+        if (!moved) break;
+        this.entities.set(change.index, { ...moved, pose: change.pose });
+        changed.entities.push(change.index);
+        break;
+      }
       case "entity_removed":
         this.entities.delete(change.index);
         changed.removed.push(change.index);

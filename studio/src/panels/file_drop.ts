@@ -3,7 +3,7 @@ import type { ServerError } from "../connection/messages";
 import { entityOf } from "../document/entity_of_model";
 import type { Parts } from "../parts";
 import { addUnder } from "../tools/ghost";
-import { openSceneFile } from "./dialogs";
+import { openSceneFile } from "./scene_dialogs";
 
 const LARGEST_BYTES = 256 * 1024 * 1024;
 
@@ -18,7 +18,7 @@ interface ImportAnswer {
 /** Files from the desktop: scenes are opened; models are imported, and added to the scene where they were dropped. */
 export class FileDrop {
   constructor(
-    private readonly parts: Pick<Parts, "server" | "notices" | "document" | "selection" | "models" | "view">,
+    private readonly parts: Pick<Parts, "server" | "notices" | "document" | "opening" | "selection" | "models" | "view">,
     private readonly imported: () => void,
   ) {
     const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;

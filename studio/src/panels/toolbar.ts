@@ -26,6 +26,7 @@ export class Toolbar {
     private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "view">,
     gizmo: Gizmo,
     private readonly actions: readonly UserAction[],
+    people: HTMLElement,
   ) {
     const find = (id: string) => actions.find((action) => action.id === id);
     const group = (ids: string[]) =>
@@ -39,9 +40,11 @@ export class Toolbar {
       ...GROUPS.map(group),
       this.sceneButtons,
       element("span", { class: "spacer" }),
+      people,
       ...GROUPS_RIGHT.map(group),
     );
     parts.document.changed.on(() => this.refresh());
+    parts.document.historyChanged.on(() => this.refresh());
     parts.playback.changed.on(() => this.refresh());
     parts.selection.changed.on(() => this.refresh());
     parts.preferences.changed.on(() => this.refresh());

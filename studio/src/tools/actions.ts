@@ -3,6 +3,7 @@ import type { IconName } from "./icons";
 import type { Parts } from "../parts";
 import { addInFront } from "./ghost";
 import type { Gizmo } from "./gizmo";
+import { allLocked, toggleLock, unlocked, withoutLocked } from "./locks";
 import { PRIMITIVES } from "./primitives";
 
 /** A command for the user: by button, key or command palette. */
@@ -23,7 +24,10 @@ export interface UserAction {
 /** Functions that open dialogs and panels; the panels provide them. */
 export interface Openers {
   scenes(): void;
+  save(): void;
   saveAs(): void;
+  saveVersion(): void;
+  versions(): void;
   help(): void;
   palette(): void;
   search(): void;
@@ -31,7 +35,7 @@ export interface Openers {
   history(): void;
 }
 
-export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view">, gizmo: Gizmo, open: Openers): UserAction[] {
+export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view" | "framing">, gizmo: Gizmo, open: Openers): UserAction[] {
   return [
     ...sceneActions(parts, open),
     ...editActions(parts, open),
@@ -48,12 +52,14 @@ export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notic
   ];
 }
 
-function sceneActions(parts: Pick<Parts, "server" | "notices" | "document">, open: Openers): UserAction[] {
+function sceneActions(parts: Pick<Parts, "server">, open: Openers): UserAction[] {
   return [
     { id: "scene.new", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
     { id: "scene.open", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
-    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: () => void save(parts, open) },
+    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: open.save },
     { id: "scene.save_as", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
+    { id: "scene.save_version", label: "Save a version…", group: "Scene", keys: [], run: open.saveVersion },
+    { id: "scene.versions", label: "Versions of this scene…", group: "Scene", keys: [], run: open.versions },
     {
       id: "scene.download",
       label: "Download scene file",
@@ -64,26 +70,23 @@ function sceneActions(parts: Pick<Parts, "server" | "notices" | "document">, ope
   ];
 }
 
-async function save(parts: Pick<Parts, "server" | "notices" | "document">, open: Openers): Promise<void> {
-  // A scene without a name asks for one.
-  if (!parts.document.name) return open.saveAs();
-  const saved = await parts.server.command("scene.save", {});
-  if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });
-}
-
-function editActions(parts: Pick<Parts, "server" | "document" | "selection" | "picked" | "entities">, open: Openers): UserAction[] {
+function editActions(parts: Pick<Parts, "server" | "notices" | "document" | "selection" | "picked" | "entities">, open: Openers): UserAction[] {
   const { selection, document } = parts;
   const some = () => selection.indices.length > 0;
-  const chosen = () => ({ indices: [...selection.indices] });
+  const forUnlocked = (command: "entity.remove" | "entity.drop_to_floor"): void => {
+    const indices = withoutLocked(parts, selection.indices);
+    if (indices.length > 0) void parts.server.command(command, { indices });
+  };
   return [
     { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
     { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
-    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void parts.server.command("entity.remove", chosen()) },
+    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
     { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
-    { id: "edit.select_all", label: "Select all", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(document.entities.keys()) },
+    { id: "edit.select_all", label: "Select all that is not locked", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(unlocked(parts, document.entities.keys())) },
     { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
+    { id: "edit.lock", label: "Lock or unlock", group: "Edit", keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
     { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
-    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void parts.server.command("entity.drop_to_floor", chosen()) },
+    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
   ];
 }
 
@@ -160,7 +163,7 @@ async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document" | 
   });
 }
 
-function viewActions(parts: Pick<Parts, "preferences" | "document" | "selection" | "entities" | "view">, open: Openers): UserAction[] {
+function viewActions(parts: Pick<Parts, "preferences" | "document" | "selection" | "entities" | "view" | "framing">, open: Openers): UserAction[] {
   const { preferences, view } = parts;
   const flip = <Name extends "tint" | "fullTint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
   return [
@@ -192,8 +195,9 @@ function viewActions(parts: Pick<Parts, "preferences" | "document" | "selection"
   ];
 }
 
-function focus(parts: Pick<Parts, "document" | "selection" | "entities" | "view">): void {
-  const { selection, document, entities, view } = parts;
-  const meant = selection.indices.length > 0 ? selection.indices : document.entities.keys();
-  view.rig.focus(entities.boundsOf(meant, performance.now()), performance.now());
+/** Looks at the selection; without one at the scene, but for its floor and walls. */
+function focus({ selection, entities, view, framing }: Pick<Parts, "selection" | "entities" | "view" | "framing">): void {
+  const now = performance.now();
+  if (selection.indices.length > 0) view.rig.focus(entities.boundsOf(selection.indices, now), now);
+  else framing.show(false);
 }

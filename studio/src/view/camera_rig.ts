@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { type Box3, PerspectiveCamera, Spherical, Vector3 } from "three";
+import type { Camera, Vector } from "../connection/scene_types";
 import { Signal } from "../signal";
 
 const ORBIT_PER_PIXEL = 0.006;
@@ -10,6 +11,9 @@ const FARTHEST = 2000;
 const FLY_TIME_MS = 250;
 const HIGHEST = Math.PI - 0.02;
 const LOWEST = 0.02;
+/** What is focused on fills this part of the picture, one over the number; and from no nearer than this, m. */
+const MARGIN = 1.2;
+const LEAST_FOCUS = 0.3;
 /** Vertical angle of view in degrees, while the picture is at least this many times as wide as high. */
 const VIEW_ANGLE = 45;
 const USUAL_ASPECT = 1.4;
@@ -19,10 +23,12 @@ export class CameraRig {
   readonly camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.03, 3000);
   readonly target = new Vector3(0, 0.5, 0);
   readonly changed = new Signal<void>();
+  /** The user moved the camera. */
+  readonly steered = new Signal<void>();
   private readonly arm = new Spherical(6, 1.15, 0.6);
   /** Metres per second to the right, up and back while flying. */
   private readonly flight = new Vector3();
-  private glide: { fromTarget: Vector3; toTarget: Vector3; fromRadius: number; toRadius: number; start: number } | null = null;
+  private glide: { fromTarget: Vector3; toTarget: Vector3; fromArm: Spherical; toArm: Spherical; start: number } | null = null;
   private readonly step = new Vector3();
 
   constructor() {
@@ -31,6 +37,12 @@ export class CameraRig {
 
   get distance(): number {
     return this.arm.radius;
+  }
+
+  /** Where the camera is and what it looks at, in millimetres. */
+  seen(): Camera {
+    const round = (length: number) => Math.round(length * 1000) / 1000;
+    return { position: this.camera.position.toArray().map(round) as Vector, target: this.target.toArray().map(round) as Vector };
   }
 
   /** Takes over the picture's aspect; in a narrow picture the horizontal angle of view stays the usual one. */
@@ -42,6 +54,7 @@ export class CameraRig {
   }
 
   orbit(dx: number, dy: number): void {
+    this.steer();
     this.arm.theta -= dx * ORBIT_PER_PIXEL;
     this.arm.phi = clamp(this.arm.phi - dy * ORBIT_PER_PIXEL, LOWEST, HIGHEST);
     this.apply();
@@ -49,6 +62,7 @@ export class CameraRig {
 
   /** Moves the target so that the point under the pointer stays under it; `height` is the canvas's, in pixels. */
   pan(dx: number, dy: number, height: number): void {
+    this.steer();
     const metresPerPixel = (2 * this.arm.radius * Math.tan((this.camera.fov * Math.PI) / 360)) / height;
     this.step.setFromMatrixColumn(this.camera.matrix, 0).multiplyScalar(-dx * metresPerPixel);
     this.target.add(this.step);
@@ -58,12 +72,14 @@ export class CameraRig {
   }
 
   zoom(notches: number): void {
+    this.steer();
     this.arm.radius = clamp(this.arm.radius * ZOOM_PER_NOTCH ** notches, NEAREST, FARTHEST);
     this.apply();
   }
 
   /** Rotates the view: the camera stays, the target moves around it. */
   look(dx: number, dy: number): void {
+    this.steer();
     const eye = this.camera.position.clone();
     this.arm.theta -= dx * LOOK_PER_PIXEL;
     this.arm.phi = clamp(this.arm.phi - dy * LOOK_PER_PIXEL, LOWEST, HIGHEST);
@@ -73,6 +89,7 @@ export class CameraRig {
 
   /** Sets the direction of flight, -1 … 1 along right, up and back; zero stops. */
   fly(right: number, up: number, back: number): void {
+    if (right || up || back) this.steer();
     const speed = Math.max(1, 0.8 * this.arm.radius);
     this.flight.set(right, up, back).multiplyScalar(speed);
     this.changed.emit();
@@ -81,25 +98,53 @@ export class CameraRig {
   /** Moves smoothly, or jumps, until the box fills most of the picture. */
   focus(bounds: Box3, now: number, jump = false): void {
     if (bounds.isEmpty()) return;
-    const radius = Math.max(0.5 * bounds.getSize(this.step).length(), 0.1);
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (1.25 * radius) / (Math.sin((this.camera.fov * Math.PI) / 360) * narrow);
-    this.glide = {
-      fromTarget: this.target.clone(),
-      toTarget: bounds.getCenter(new Vector3()),
-      fromRadius: this.arm.radius,
-      toRadius: clamp(distance, NEAREST, FARTHEST),
-      start: jump ? now - FLY_TIME_MS : now,
-    };
+    const toArm = this.arm.clone();
+    const toTarget = bounds.getCenter(new Vector3());
+    toArm.radius = clamp(this.distanceFor(bounds, toTarget), NEAREST, FARTHEST);
+    this.glideTo(toTarget, toArm, jump ? now - FLY_TIME_MS : now);
     if (jump) this.advance(now, 0);
+  }
+
+  /** Moves smoothly to `position`, looking at `target`. */
+  goTo(position: readonly number[], target: readonly number[], now: number): void {
+    const toTarget = new Vector3().fromArray(target);
+    const toArm = armTo(position, toTarget);
+    // The shorter way around.
+    toArm.theta += 2 * Math.PI * Math.round((this.arm.theta - toArm.theta) / (2 * Math.PI));
+    this.glideTo(toTarget, toArm, now);
+  }
+
+  /** The user's hand counts more than a smooth move that is going on. */
+  private steer(): void {
+    this.glide = null;
+    this.steered.emit();
+  }
+
+  private glideTo(toTarget: Vector3, toArm: Spherical, start: number): void {
+    this.glide = { fromTarget: this.target.clone(), toTarget, fromArm: this.arm.clone(), toArm, start };
     this.changed.emit();
+  }
+
+  /** The distance from the box's centre at which, seen from the present side, all its corners are in the picture. */
+  private distanceFor(bounds: Box3, centre: Vector3): number {
+    this.camera.updateMatrix();
+    const toCamera = this.camera.quaternion.clone().invert();
+    const upright = Math.tan((this.camera.fov * Math.PI) / 360);
+    const corner = new Vector3();
+    let distance = 0;
+    for (let which = 0; which < 8; ++which) {
+      corner.set(which & 1 ? bounds.max.x : bounds.min.x, which & 2 ? bounds.max.y : bounds.min.y, which & 4 ? bounds.max.z : bounds.min.z);
+      corner.sub(centre).applyQuaternion(toCamera);
+      const across = Math.max(Math.abs(corner.y) / upright, Math.abs(corner.x) / (upright * this.camera.aspect));
+      distance = Math.max(distance, corner.z + MARGIN * across);
+    }
+    return Math.max(distance, LEAST_FOCUS);
   }
 
   /** Puts the camera at `position`, looking at `target`. */
   place(position: readonly number[], target: readonly number[]): void {
     this.target.fromArray(target);
-    this.arm.setFromVector3(this.step.fromArray(position).sub(this.target));
-    this.arm.radius = Math.max(this.arm.radius, NEAREST);
+    this.arm.copy(armTo(position, this.target));
     this.glide = null;
     this.apply();
   }
@@ -115,7 +160,9 @@ export class CameraRig {
       const part = Math.min((now - this.glide.start) / FLY_TIME_MS, 1);
       const eased = part * part * (3 - 2 * part);
       this.target.lerpVectors(this.glide.fromTarget, this.glide.toTarget, eased);
-      this.arm.radius = this.glide.fromRadius + (this.glide.toRadius - this.glide.fromRadius) * eased;
+      const { fromArm, toArm } = this.glide;
+      const between = (from: number, to: number) => from + (to - from) * eased;
+      this.arm.set(between(fromArm.radius, toArm.radius), between(fromArm.phi, toArm.phi), between(fromArm.theta, toArm.theta));
       if (part >= 1) this.glide = null;
     }
     if (flying || this.glide) this.apply();
@@ -133,6 +180,14 @@ export class CameraRig {
     this.camera.lookAt(this.target);
     this.camera.updateMatrix();
   }
+}
+
+/** The arm from the target to the position. */
+function armTo(position: readonly number[], target: Vector3): Spherical {
+  const arm = new Spherical().setFromVector3(new Vector3().fromArray(position).sub(target));
+  arm.radius = clamp(arm.radius, NEAREST, FARTHEST);
+  arm.phi = clamp(arm.phi, LOWEST, HIGHEST);
+  return arm;
 }
 
 function clamp(value: number, low: number, high: number): number {

@@ -3,6 +3,7 @@ import {
   AlwaysStencilFunc,
   BufferGeometry,
   Color,
+  type ColorRepresentation,
   Group,
   InstancedBufferGeometry,
   KeepStencilOp,
@@ -17,32 +18,53 @@ import {
 } from "three";
 import type { EntityView } from "./entity_view";
 
-const OUTLINE_COLOR = 0xffa726;
+const OWN_COLOR = 0xffa726;
 const WIDTH_PIXELS = 2;
 const COPIES = 8;
+/** The own selection is drawn last, over those of the others. */
+const OWN_LAYER = 1;
+const LAST_ORDER = 999;
+/** Layers of outlines, as many as a stencil buffer of eight bits tells apart. */
+export const MOST_LAYERS = 255;
 
 /**
- * A line around the selection: the silhouette is drawn into the stencil buffer, then eight copies shifted by the line's width
+ * A line around entities: their silhouette is drawn into the stencil buffer, then eight copies shifted by the line's width
  * are drawn outside of it. It works for any mesh and needs no second render target, which matters on software renderers.
+ * Several outlines are drawn one after the other, each on a layer (a number from 1) of its own: 1 is drawn last.
  */
 export class Outline {
   readonly group = new Group();
-  private readonly mask = new MeshBasicMaterial({
-    colorWrite: false,
-    depthWrite: false,
-    depthTest: false,
-    side: 2,
-    stencilWrite: true,
-    stencilRef: 1,
-    stencilFunc: AlwaysStencilFunc,
-    stencilZPass: ReplaceStencilOp,
-  });
-  private readonly rim = rimMaterial();
+  private readonly mask: MeshBasicMaterial;
+  private readonly rim: ShaderMaterial;
   private readonly cloudRim = new Uniform(0);
   private shown: { index: number; meshes: Mesh[]; ofCloud: boolean }[] = [];
   private readonly matrix = new Matrix4();
 
-  constructor(private readonly entities: EntityView) {}
+  constructor(
+    private readonly entities: EntityView,
+    private readonly color: ColorRepresentation = OWN_COLOR,
+    private readonly layer = OWN_LAYER,
+  ) {
+    this.mask = new MeshBasicMaterial({
+      colorWrite: false,
+      depthWrite: false,
+      depthTest: false,
+      // What is transparent is drawn in the order of the layers.
+      transparent: true,
+      side: 2,
+      stencilWrite: true,
+      stencilRef: layer,
+      stencilFunc: AlwaysStencilFunc,
+      stencilZPass: ReplaceStencilOp,
+    });
+    this.rim = rimMaterial(color, layer);
+  }
+
+  dispose(): void {
+    this.show([]);
+    this.mask.dispose();
+    this.rim.dispose();
+  }
 
   /** Outlines exactly these entities, as they are drawn now. */
   show(indices: readonly number[]): void {
@@ -53,21 +75,21 @@ export class Outline {
     for (const index of indices) {
       const cloud = this.entities.clouds.of(index);
       if (cloud?.isLiquid) {
-        const meshes = [this.mesh(maskGeometry(cloud.geometry), this.mask, 998), this.mesh(rimGeometry(cloud.geometry), this.rim, 999)];
+        const meshes = [this.mesh(maskGeometry(cloud.geometry), this.mask), this.mesh(rimGeometry(cloud.geometry), this.rim)];
         this.shown.push({ index, meshes, ofCloud: false });
         continue;
       }
       if (cloud) {
-        const mask = this.prepared(cloud.twin(this.mask.clone(), new Uniform(0)), 998);
-        const rim = this.prepared(cloud.twin(cloudRimMaterial(), this.cloudRim), 999);
+        const mask = this.prepared(cloud.twin(this.mask.clone(), new Uniform(0)), true);
+        const rim = this.prepared(cloud.twin(cloudRimMaterial(this.color, this.layer), this.cloudRim), false);
         this.shown.push({ index, meshes: [mask, rim], ofCloud: true });
         continue;
       }
       const drawable = this.entities.drawableOf(index);
       if (!drawable?.castsShadow) continue;
       const meshes = drawable.parts.flatMap((part) => [
-        this.mesh(maskGeometry(part.geometry), this.mask, 998),
-        this.mesh(rimGeometry(part.geometry), this.rim, 999),
+        this.mesh(maskGeometry(part.geometry), this.mask),
+        this.mesh(rimGeometry(part.geometry), this.rim),
       ]);
       this.shown.push({ index, meshes, ofCloud: false });
     }
@@ -94,15 +116,15 @@ export class Outline {
     }
   }
 
-  private mesh(geometry: BufferGeometry, material: MeshBasicMaterial | ShaderMaterial, order: number): Mesh {
-    return this.prepared(new Mesh(geometry, material), order);
+  private mesh(geometry: BufferGeometry, material: MeshBasicMaterial | ShaderMaterial): Mesh {
+    return this.prepared(new Mesh(geometry, material), material === this.mask);
   }
 
-  private prepared(mesh: Mesh, order: number): Mesh {
+  private prepared(mesh: Mesh, isMask: boolean): Mesh {
     mesh.matrixAutoUpdate = false;
     mesh.matrixWorldAutoUpdate = false;
     mesh.frustumCulled = false;
-    mesh.renderOrder = order;
+    mesh.renderOrder = LAST_ORDER - 2 * (this.layer - 1) - (isMask ? 1 : 0);
     mesh.raycast = () => {};
     this.group.add(mesh);
     return mesh;
@@ -138,31 +160,31 @@ function rimGeometry(original: BufferGeometry): BufferGeometry {
   return geometry;
 }
 
-function cloudRimMaterial(): MeshBasicMaterial {
+function cloudRimMaterial(color: ColorRepresentation, layer: number): MeshBasicMaterial {
   return new MeshBasicMaterial({
-    color: OUTLINE_COLOR,
+    color,
     depthTest: false,
     depthWrite: false,
     transparent: true,
     toneMapped: false,
     stencilWrite: true,
-    stencilRef: 1,
+    stencilRef: layer,
     stencilFunc: NotEqualStencilFunc,
     stencilZPass: KeepStencilOp,
   });
 }
 
-function rimMaterial(): ShaderMaterial {
+function rimMaterial(color: ColorRepresentation, layer: number): ShaderMaterial {
   return new ShaderMaterial({
     depthTest: false,
     depthWrite: false,
     transparent: true,
     side: 2,
     stencilWrite: true,
-    stencilRef: 1,
+    stencilRef: layer,
     stencilFunc: NotEqualStencilFunc,
     stencilZPass: KeepStencilOp,
-    uniforms: { shift: { value: new Vector2() }, color: { value: new Color(OUTLINE_COLOR) } },
+    uniforms: { shift: { value: new Vector2() }, color: { value: new Color(color) } },
     vertexShader: `
       uniform vec2 shift;
       void main() {
@@ -172,6 +194,9 @@ function rimMaterial(): ShaderMaterial {
       }`,
     fragmentShader: `
       uniform vec3 color;
-      void main() { gl_FragColor = vec4(color, 1.0); }`,
+      void main() {
+        gl_FragColor = vec4(color, 1.0);
+        #include <colorspace_fragment>
+      }`,
   });
 }

@@ -8,6 +8,8 @@ import { CollisionOverlay } from "./collision_overlay";
 import { DebugOverlay } from "./debug_overlay";
 import type { EntityView } from "./entity_view";
 import { Environment, type Theme } from "./environment";
+import type { People } from "../document/people";
+import { PeopleView } from "./people_view";
 import { PinMarks } from "./pin_marks";
 import { Outline } from "./outline";
 import type { Quality } from "./tint";
@@ -39,6 +41,7 @@ export class View {
   readonly collision: CollisionOverlay;
   readonly debug = new DebugOverlay();
   readonly pins: PinMarks;
+  readonly people: PeopleView;
   /** Sent just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
   /** Drawing was slow for the last SLOW_PICTURES pictures; sent once. */
@@ -68,6 +71,7 @@ export class View {
     readonly canvas: HTMLCanvasElement,
     private readonly motion: Motion,
     readonly entities: EntityView,
+    people: People,
     quality: Quality,
   ) {
     // Antialiasing is the larger half of a picture's cost without a graphics card; a context cannot change it later.
@@ -80,7 +84,8 @@ export class View {
     this.outline = new Outline(entities);
     this.collision = new CollisionOverlay(entities);
     this.pins = new PinMarks(entities.softs);
-    this.scene.add(entities.group, this.outline.group, this.collision.group, this.debug.group, this.pins.points);
+    this.people = new PeopleView(people, entities);
+    this.scene.add(entities.group, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
     this.rig.changed.on(() => {
       entities.lookFrom(this.rig.camera.position);
       this.invalidate();
@@ -206,13 +211,14 @@ export class View {
     this.collision.update(now);
     this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
+    const peopleMove = this.people.advance(now, this.rig.camera, this.size, this.canvas.clientHeight);
     const sunMoved = this.environment.follow(this.rig.target, this.rig.distance);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
     this.entities.shadowsAreOld = false;
     this.renderer.render(this.scene, this.rig.camera);
     ++this.frames;
-    this.goesOn = flying || moving;
-    if (flying) this.invalidate();
+    this.goesOn = flying || moving || peopleMove;
+    if (flying || peopleMove) this.invalidate();
     else if (moving) this.drawSoon();
     else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
   }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+import { initials, memberName } from "../document/people";
+import type { Member } from "../connection/messages";
+import type { Parts } from "../parts";
+import { inkOn } from "../view/name_tag";
+import { lookOf } from "../view/people_view";
+import { openTextDialog } from "./dialogs";
+import { element, show } from "./element";
+
+/** Everybody in the session as coloured initials; a click looks where they look. Hidden while nobody else is here. */
+export class PeopleBar {
+  readonly root = element("div", { class: "people", role: "group", "aria-label": "People in this scene", "data-testid": "people" });
+
+  constructor(private readonly parts: Pick<Parts, "preferences" | "notices" | "people" | "view">) {
+    parts.people.changed.on(() => this.fill());
+    this.fill();
+  }
+
+  private fill(): void {
+    const { people } = this.parts;
+    show(this.root, people.others.length > 0);
+    // This page first, the others as they came.
+    const members = [...people.members].sort((a, b) => Number(people.isSelf(b)) - Number(people.isSelf(a)));
+    this.root.replaceChildren(...members.map((member) => this.button(member)));
+  }
+
+  private button(member: Member): HTMLElement {
+    const isSelf = this.parts.people.isSelf(member);
+    const name = memberName(member);
+    const title = isSelf ? `${name} (you): change your name` : `${name}: look where they look`;
+    const button = element(
+      "button",
+      { class: isSelf ? "person self" : "person", title, "aria-label": title, "data-testid": `person-${member.client}`, onclick: () => (isSelf ? this.rename() : this.join(member)) },
+      initials(name),
+    );
+    // The server's colour; the policy allows no style attribute, but a property that a script sets.
+    button.style.background = member.color;
+    button.style.color = inkOn(member.color);
+    return button;
+  }
+
+  private rename(): void {
+    const { preferences } = this.parts;
+    openTextDialog("Your name", { label: "What the others see", value: preferences.get("userName"), action: "Use it", testId: "rename" }, async (name) => {
+      preferences.set("userName", name);
+      return null;
+    });
+  }
+
+  private join(member: Member): void {
+    const { people, notices, view } = this.parts;
+    const look = lookOf(people.presence(member.client));
+    if (look) view.rig.goTo(look.position, look.target, performance.now());
+    else notices.tell({ level: "info", text: `It is not known yet where ${memberName(member)} looks` });
+  }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Work that was not saved when its program ended, or when another scene was opened: it is offered at the start.
+import type { Recovery } from "../connection/messages";
+import type { Parts } from "../parts";
+import { dateText, dialogButtons, openDialog } from "./dialogs";
+import { element } from "./element";
+
+export function editsText(edits: number | undefined): string {
+  return edits === undefined ? "" : `${edits.toLocaleString("en")} ${edits === 1 ? "edit" : "edits"}`;
+}
+
+/** Removes unsaved work for good; whether it was. */
+export async function discardRecovery(parts: Pick<Parts, "server">, name: string): Promise<boolean> {
+  return (await parts.server.command("scene.discard", { name })) !== undefined;
+}
+
+/** Offers the recoveries that the user did not put off before; `open` opens one of them. */
+export function offerRecoveries(parts: Pick<Parts, "preferences" | "server">, found: readonly Recovery[], open: (name: string) => void): void {
+  const put = parts.preferences.get("recoveriesKept");
+  const fresh = found.filter(({ name }) => !put.includes(name));
+  // Names of what is gone are forgotten.
+  const keep = (names: readonly Recovery[]) => parts.preferences.set("recoveriesKept", names.map(({ name }) => name));
+  if (fresh.length === 0 || document.querySelector("[data-testid=recovery-dialog]")) return;
+
+  const list = element("ul", { class: "recoveries" });
+  const rowOf = ({ name, title, modified, edits }: Recovery): HTMLElement => {
+    const discard = async (): Promise<void> => {
+      if (!(await discardRecovery(parts, name))) return;
+      row.remove();
+      if (list.children.length === 0) dialog.close();
+    };
+    const row = element(
+      "li",
+      { class: "recovery-row", "data-testid": `recovery-${name}` },
+      element("span", { class: "recovery-text" }, element("strong", {}, title || name), element("span", { class: "note" }, [dateText(modified), editsText(edits)].filter(Boolean).join(" · "))),
+      element("button", { class: "primary", "data-testid": "recovery-open", onclick: () => (dialog.close(), open(name)) }, "Open"),
+      element("button", { "data-testid": "recovery-discard", onclick: () => void discard() }, "Discard"),
+    );
+    return row;
+  };
+  list.append(...fresh.map(rowOf));
+  const dialog = openDialog(
+    "Unsaved work was found",
+    "recovery-dialog",
+    list,
+    element("p", { class: "note" }, "What you keep for later is under “Recovered” in “Open a scene”."),
+    dialogButtons(element("button", { "data-testid": "recovery-later", onclick: () => dialog.close() }, "Keep for later")),
+  );
+  dialog.addEventListener("close", () => keep(found));
+  list.querySelector("button")?.focus();
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// New, open, save: what opens another scene goes through openScene(), so that unsaved work and the others are thought of.
+import { reasonText } from "../connection/connection";
+import type { Commands, SceneListing } from "../connection/messages";
+import type { Parts } from "../parts";
+import { dateText, dialogButtons, openDialog, openTextDialog } from "./dialogs";
+import { element } from "./element";
+import { discardRecovery, editsText } from "./recovery";
+
+type Opener = Pick<Parts, "server" | "notices" | "document" | "opening" | "view">;
+
+/** Asks before unsaved changes are left; true at once where there are none. */
+function mayLeave(parts: Opener): Promise<boolean> {
+  const { document: scene } = parts;
+  if (!scene.unsaved) return Promise.resolve(true);
+  return new Promise((resolve) => {
+    let answer = false;
+    const leave = (): void => {
+      answer = true;
+      dialog.close();
+    };
+    const saveFirst = async (): Promise<void> => {
+      if (await saveScene(parts)) leave();
+    };
+    const dialog = openDialog(
+      "The scene has unsaved changes",
+      "unsaved-dialog",
+      element("p", {}, `“${scene.title}” is then kept as it is among the recovered scenes, where “Open a scene” finds it.`),
+      dialogButtons(
+        element("button", { onclick: () => dialog.close() }, "Cancel"),
+        // A scene without a name would have to be asked for one.
+        scene.name ? element("button", { "data-testid": "save-first", onclick: () => void saveFirst() }, "Save first") : null,
+        element("button", { class: "primary", "data-testid": "leave-scene", onclick: leave }, "Leave and keep it"),
+      ),
+    );
+    dialog.addEventListener("close", () => resolve(answer));
+  });
+}
+
+/** Opens a scene, after asking whether unsaved work may be left; where others are here, the server asks them. */
+async function openScene(parts: Opener, params: Commands["scene.load"][0]): Promise<void> {
+  if (!(await mayLeave(parts))) return;
+  const result = await parts.server.command("scene.load", params);
+  if (result) parts.opening.wait(result);
+}
+
+export async function newScene(parts: Opener): Promise<void> {
+  if (!(await mayLeave(parts))) return;
+  const result = await parts.server.command("scene.new", {});
+  if (result) parts.opening.wait(result);
+}
+
+/** Opens a recovered scene. */
+export function openRecovery(parts: Opener, name: string): Promise<void> {
+  return openScene(parts, { name });
+}
+
+/** Opens a scene from a file of the user's computer; the server reports errors in it with file, line and field. */
+export async function openSceneFile(parts: Opener, file: File): Promise<void> {
+  await openScene(parts, { text: await file.text(), file: file.name });
+}
+
+/** Lists the user's saved scenes, the demo scenes and what was recovered. */
+export async function openScenes(parts: Opener): Promise<void> {
+  const body = element("div", { class: "scene-lists" }, element("p", { class: "note" }, "Loading…"));
+  const file = element("input", { type: "file", accept: ".json,application/json", hidden: true });
+  const fromFile = element("button", { onclick: () => file.click() }, "Open a scene file…");
+  const dialog = openDialog("Open a scene", "scenes-dialog", body, dialogButtons(file, fromFile));
+  const load = (name: string): void => {
+    dialog.close();
+    void openScene(parts, { name });
+  };
+  file.addEventListener("change", () => {
+    const chosen = file.files?.[0];
+    if (!chosen) return;
+    dialog.close();
+    void openSceneFile(parts, chosen);
+  });
+
+  const fill = async (): Promise<boolean> => {
+    const answer = await parts.server.command("scene.list", {});
+    if (!answer) return false;
+    const list = (title: string, kind: SceneListing["kind"], none: string) => {
+      const items = answer.scenes.filter((scene) => scene.kind === kind).map((scene) => sceneItem(scene, load, () => void discard(scene.name)));
+      return element("section", {}, element("h3", {}, title), items.length > 0 ? element("ul", {}, ...items) : element("p", { class: "note" }, none));
+    };
+    const recovered = answer.scenes.some((scene) => scene.kind === "recovery");
+    body.replaceChildren(
+      list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."),
+      list("Examples", "demo", "No examples found."),
+      ...(recovered ? [list("Recovered (kept automatically, never saved)", "recovery", "")] : []),
+    );
+    return true;
+  };
+  const discard = async (name: string): Promise<void> => {
+    await discardRecovery(parts, name);
+    await fill();
+  };
+  if (!(await fill())) return dialog.close();
+  body.querySelector<HTMLElement>("button")?.focus();
+}
+
+function sceneItem(scene: SceneListing, load: (name: string) => void, discard: () => void): HTMLElement {
+  const { name, kind, modified } = scene;
+  // The date of a demo scene is of no use to the user.
+  const note = kind === "demo" ? "" : [nameBeside(scene), dateText(modified), kind === "recovery" ? editsText(scene.edits) : ""].filter(Boolean).join(" · ");
+  const open = element(
+    "button",
+    { class: "scene-item", "data-testid": `scene-${name}`, onclick: () => load(name) },
+    element("span", {}, scene.title || name),
+    note ? element("span", { class: "note" }, note) : null,
+  );
+  if (kind !== "recovery") return element("li", {}, open);
+  const button = element("button", { "data-testid": `discard-${name}`, "aria-label": `Discard ${scene.title || name}`, onclick: discard }, "Discard");
+  return element("li", { class: "recovery-row" }, open, button);
+}
+
+/** The name that a scene is saved under, where it differs from the title. */
+function nameBeside({ kind, name, title }: SceneListing): string {
+  return kind === "saved" && title && title !== name ? name : "";
+}
+
+/** Saves the scene with the camera as it is; a scene without a name asks for one. Whether it was saved at once. */
+export async function saveScene(parts: Pick<Parts, "server" | "notices" | "document" | "view">): Promise<boolean> {
+  if (!parts.document.name) {
+    saveAs(parts);
+    return false;
+  }
+  const saved = await parts.server.command("scene.save", { camera: parts.view.rig.seen() });
+  if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });
+  return saved !== undefined;
+}
+
+export function saveAs(parts: Pick<Parts, "server" | "notices" | "document" | "view">): void {
+  const value = parts.document.name || parts.document.title;
+  openTextDialog("Save the scene", { label: "Name", value, action: "Save", testId: "save", note: "It opens again as you see it now." }, async (name) => {
+    try {
+      const saved = await parts.server.request("scene.save", { name, camera: parts.view.rig.seen() });
+      parts.notices.tell({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
+      return null;
+    } catch (error) {
+      return reasonText(error as Error);
+    }
+  });
+}
+
+/** Keeps a copy of the scene as it is now under a name of its own. */
+export function saveVersion(parts: Pick<Parts, "server" | "notices" | "document" | "view">): void {
+  const { document: scene } = parts;
+  const value = `${scene.title}, ${new Date().toLocaleDateString([], { day: "numeric", month: "short" })}`;
+  const note = "The scene is saved too. “Versions of this scene” lists all.";
+  openTextDialog("Save a version", { label: "What this version is called", value, action: "Save version", testId: "version", note }, async (version) => {
+    if (version === "") return "A version needs a name, such as “before the move”.";
+    try {
+      const name = scene.name || scene.title;
+      const saved = await parts.server.request("scene.save", { name, version, camera: parts.view.rig.seen() });
+      parts.notices.tell({ level: "info", text: `Saved “${saved.name}” and its version “${version}”` });
+      return null;
+    } catch (error) {
+      return reasonText(error as Error);
+    }
+  });
+}
+
+/** Lists the versions of the open scene, the newest first. */
+export async function openVersions(parts: Opener): Promise<void> {
+  const { name } = parts.document;
+  const answer = name ? await parts.server.command("scene.versions", { name }) : { versions: [] };
+  if (!answer) return;
+  const versions = [...answer.versions].sort((a, b) => (b.modified ?? "").localeCompare(a.modified ?? ""));
+  const load = (version: string): void => {
+    dialog.close();
+    void openScene(parts, { name, version });
+  };
+  const items = versions.map(({ version, modified }) =>
+    element(
+      "li",
+      {},
+      element(
+        "button",
+        { class: "scene-item", "data-testid": `version-${version}`, onclick: () => load(version) },
+        element("span", {}, version),
+        element("span", { class: "note" }, dateText(modified)),
+      ),
+    ),
+  );
+  const save = element("button", { onclick: () => (dialog.close(), saveVersion(parts)) }, "Save a version…");
+  const none = element("p", { class: "note" }, "This scene has no versions yet. A version is a copy under a name, to come back to.");
+  const dialog = openDialog("Versions of this scene", "versions-dialog", items.length > 0 ? element("ul", {}, ...items) : none, dialogButtons(save));
+}
