@@ -29,7 +29,7 @@ export async function openBrowser() {
 }
 
 /** A connected page of the Studio, with its models drawn. Errors of the page fail the test through `faults`. */
-export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {} } = {}) {
+export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {}, recoveries = false } = {}) {
   const context = await browser.newContext({ viewport: { width, height } });
   const page = await context.newPage();
   await prepare(page);
@@ -40,6 +40,8 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   url.searchParams.set("quality", quality);
   await page.goto(url.href);
   await page.waitForFunction(() => window.embody?.connected() && window.embody.loading() === 0, null, { timeout: 60000 });
+  // Earlier tests leave unsaved work behind, which the page offers.
+  if (!recoveries && (await page.getByTestId("recovery-later").isVisible())) await page.getByTestId("recovery-later").click();
   return page;
 }
 

@@ -71,7 +71,7 @@ export class MockServer {
   attributes(index) {
     const manual = this.entity(index)?.attributes ?? {};
     const number = (name, kind, label, unit, value, source, level) => ({
-      name, kind, label, unit, type: "number", choices: [], range: [0, null], help: `${label} of the body.`, low: value * 0.7, high: value * 1.4,
+      name, kind, label, unit, type: "number", choices: [], range: [0, 1e9], help: `${label} of the body.`, low: value * 0.7, high: value * 1.4,
       value: manual[name] ?? value, automatic: value, overridden: name in manual,
       source: name in manual ? "set by hand" : source, level: name in manual ? "manual" : level,
     });
@@ -90,7 +90,7 @@ export class MockServer {
 
   // Commands by name; each returns its result and may edit the scene.
   commands = {
-    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 2, undo: null, redo: null, unsaved: false, name: "", client: 7, spawned: [], despawned: [] }),
+    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 2, undo: null, redo: null, unsaved: false, name: "", client: 7, members: [{ client: 7, name: "Studio 7", color: "#0072b2" }], recovered: [], spawned: [], despawned: [] }),
     "catalog.categories": () => ({ categories: NOUNS.map((category) => ({ category, models: Math.ceil(this.models / NOUNS.length) })) }),
     "catalog.model": ({ key }) => ({ model: this.model(Number(key.split("/")[1])), attributes: [] }),
     "catalog.search": ({ words = "", category = "", limit = 50, offset = 0 }) => {
@@ -108,6 +108,13 @@ export class MockServer {
       this.tell([]);
       return { name: this.scene.title, path: "mock.json" };
     },
+    "scene.new": () => {
+      this.scene = { title: "Untitled", settings: {}, entities: [], joints: [], actions: [] };
+      this.unsaved = false;
+      this.tell([{ op: "reset", scene: this.scene }]);
+    },
+    "client.present": () => {},
+    "entity.lock": ({ indices, locked }) => this.edit("lock", () => indices.forEach((index) => (this.entity(index).locked = locked))),
     "catalog.stop": () => {},
     "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", settings }]),
     "entity.add": ({ entity, drop }) => {
@@ -130,7 +137,8 @@ export class MockServer {
     "entity.update": ({ index, entity }) => this.edit("change", () => Object.assign(this.entity(index), entity)),
     "entity.set_attribute": ({ indices, name, value }) => {
       if (name === "mass" && !(value > 0)) throw { where: name, why: "the mass must be above 0 kg", remedy: "" };
-      this.edit(`set ${name}`, () => indices.forEach((index) => (this.entity(index).attributes = { ...this.entity(index).attributes, [name]: value })));
+      const whole = (index) => (Array.isArray(value) ? value.map((part, at) => part ?? (this.attributes(index).find((each) => each.name === name).value[at])) : value);
+      this.edit(`set ${name}`, () => indices.forEach((index) => (this.entity(index).attributes = { ...this.entity(index).attributes, [name]: whole(index) })));
     },
     "entity.reset_attribute": ({ indices, name }) => this.edit(`reset ${name}`, () => indices.forEach((index) => delete this.entity(index).attributes?.[name])),
     "entity.attributes": ({ index }) => ({ attributes: this.attributes(index) }),
@@ -202,7 +210,8 @@ export class MockServer {
   }
 
   tell(changes) {
-    this.broadcast({ event: "document", revision: 1, changes, undo: this.past.at(-1)?.label ?? null, redo: this.future.at(-1)?.label ?? null, unsaved: this.unsaved ?? false, name: "" });
+    this.broadcast({ event: "document", revision: 1, changes, unsaved: this.unsaved ?? false, name: "" });
+    this.broadcast({ event: "history", undo: this.past.at(-1)?.label ?? null, redo: this.future.at(-1)?.label ?? null });
   }
 
   broadcast(event) {

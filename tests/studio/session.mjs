@@ -4,8 +4,12 @@ import assert from "node:assert/strict";
 import { openBrowser, openStudio } from "./browser.mjs";
 import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
 
+/** Commands that the page would be asked about, were they not told to go ahead. */
+const ASKING = ["scene.load", "scene.new"];
+
 /** Runs a command of docs/protocol.md as another client of the page's server; returns its result, or an error with the refusal. */
 export function commandFrom(page, name, params = {}) {
+  const told = ASKING.includes(name) ? { ask: false, ...params } : params;
   return page.evaluate(
     async ([command, params]) => {
       const socket = new WebSocket(`ws://${location.host}/ws`);
@@ -18,7 +22,7 @@ export function commandFrom(page, name, params = {}) {
       if (!reply.ok) throw new Error(JSON.stringify(reply.error));
       return reply.result;
     },
-    [name, params],
+    [name, told],
   );
 }
 

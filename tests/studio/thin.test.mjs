@@ -189,7 +189,7 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
       }, text.replace("4711", number));
       await page.dispatchEvent("#scene", "drop", { dataTransfer: drop, clientX: 500, clientY: 400 });
       // The scene has unsaved changes, so the Studio asks first.
-      await page.getByTestId("discard").click();
+      await page.getByTestId("leave-scene").click();
       await page.getByText(said).waitFor({ timeout: 20000 });
     }
     assert.equal(await page.evaluate(() => window.embody.entities().length), before);
