@@ -9,6 +9,7 @@ import { EntityFields } from "./panels/entity_fields";
 import { FileDrop } from "./panels/file_drop";
 import { openHelp } from "./panels/help";
 import { openHistory } from "./panels/history";
+import { HeadsetButtons } from "./panels/headset_buttons";
 import { Hierarchy } from "./panels/hierarchy";
 import { ModelBrowser } from "./panels/model_browser";
 import { ModelFields } from "./panels/model_fields";
@@ -30,7 +31,8 @@ import { makeActions, type UserAction } from "./tools/actions";
 import { Gizmo } from "./tools/gizmo";
 import { Keyboard } from "./tools/keys";
 import { Pointer } from "./tools/pointer";
-import { offerHeadset } from "./view/headset";
+import { ContactSounds } from "./tools/contact_sounds";
+import { VrSession } from "./vr/session";
 
 const canvas = element("canvas", { tabindex: 0, "aria-label": "The scene", "data-testid": "canvas" });
 const scene = element("main", { id: "scene" }, canvas);
@@ -95,8 +97,15 @@ function start(): void {
     // While others are here the scene stays open.
     if (studio.document.unsaved && studio.people.others.length === 0) event.preventDefault();
   });
-  void offerHeadset(studio.view, scene);
-  offerTestHook(studio);
+  const sounds = new ContactSounds(studio);
+  const headset = new VrSession(studio, actions, sounds);
+  const headsetButtons = new HeadsetButtons(studio, headset);
+  scene.append(headsetButtons.root);
+  studio.connection.event.on((event) => {
+    if (event.event === "impacts") sounds.take(event.impacts);
+    else if (event.event === "hand" && headset.isRunning) headset.interaction.shake(event.hand, event.impulse);
+  });
+  offerTestHook(studio, headset, sounds);
   studio.connection.open();
 }
 

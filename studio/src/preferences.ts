@@ -4,6 +4,7 @@ import { Signal } from "./signal";
 import type { Theme } from "./view/environment";
 import { drawsInSoftware } from "./view/software";
 import type { Quality } from "./view/tint";
+import { VR_DEFAULTS, type VrSettings } from "./vr/settings";
 
 /** This user's preferences; kept in the browser. */
 export interface PreferenceValues {
@@ -32,6 +33,9 @@ export interface PreferenceValues {
   recoveriesKept: string[];
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
+  /** Impacts are heard. */
+  sounds: boolean;
+  vr: VrSettings;
 }
 
 const PLACE = "embody.preferences";
@@ -52,6 +56,8 @@ const DEFAULTS: PreferenceValues = {
   nameAsked: false,
   recoveriesKept: [],
   keys: {},
+  sounds: true,
+  vr: VR_DEFAULTS,
 };
 
 export class Preferences {
@@ -60,7 +66,7 @@ export class Preferences {
 
   constructor() {
     const kept = readKept();
-    this.values = { ...DEFAULTS, ...kept };
+    this.values = { ...DEFAULTS, ...kept, vr: { ...VR_DEFAULTS, ...kept.vr } };
     if (!kept.quality && drawsInSoftware()) this.values.quality = "low";
     // `?quality=low` holds for one visit: for software renderers and tests.
     const asked = new URLSearchParams(location.search).get("quality");

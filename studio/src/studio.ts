@@ -282,6 +282,8 @@ export class Studio implements Parts {
         this.entities.redress(event.index);
         break;
       case "action":
+      case "impacts":
+      case "hand":
         break;
     }
   }

@@ -3,7 +3,10 @@ import { Vector3 } from "three";
 import type { BodyState } from "./document/motion";
 import { nameOf } from "./document/scene_document";
 import type { Studio } from "./studio";
+import type { ContactSounds, Heard } from "./tools/contact_sounds";
 import { presentPoses } from "./tools/poses";
+import type { VrSession } from "./vr/session";
+import { type VrHook, vrHook } from "./vr/test_view";
 
 /** What tests and scripts in the page may read: `window.embody`. It can change nothing but the drawing. */
 export interface TestHook {
@@ -36,12 +39,16 @@ export interface TestHook {
   filled(): { width: number; height: number };
   /** This page's number, and what it knows of the other members; `drawn`: they are in the picture. */
   people(): { client: number; others: { client: number; name: string; color: string; drawn: boolean; presence: unknown }[] };
+  /** The Studio in a headset. */
+  readonly vr: VrHook;
+  /** Sounds of impacts that were made, the newest last. */
+  heard(): readonly Heard[];
   /** Stops drawing, for screenshots; resume() starts it again. */
   halt(): void;
   resume(): void;
 }
 
-export function offerTestHook(studio: Studio): void {
+export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds): void {
   const hook: TestHook = {
     connected: () => studio.server.isOpen && studio.server.ready,
     simulation: () => studio.playback.simulation,
@@ -90,6 +97,8 @@ export function offerTestHook(studio: Studio): void {
       client: studio.server.client,
       others: studio.people.others.map((member) => ({ ...member, drawn: studio.view.people.drawn.includes(member.client), presence: studio.people.presence(member.client) })),
     }),
+    vr: vrHook(studio, headset),
+    heard: () => sounds.heard,
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),
   };

@@ -176,6 +176,21 @@ export interface Ray {
   direction: Vector;
 }
 
+/** Where a member is, for the others. */
+export interface Presence {
+  head?: { position: Vector; rotation: Quaternion } | null;
+  hands?: { hand: "left" | "right"; position: Vector; rotation: Quaternion; holds?: number }[];
+  mode?: "page" | "headset";
+}
+
+/** A new contact that can be heard. `a` and `b` are the entities; the impulse in N s. */
+export interface Impact {
+  position: Vector;
+  impulse: number;
+  a: number;
+  b: number;
+}
+
 /** The scene and its simulation at the time when a client connects. */
 export interface Hello {
   version: string;
@@ -245,7 +260,7 @@ export interface Commands {
   "entity.remove": [{ indices: number[] }, unknown];
   "entity.transform": [{ poses: PoseEdit[]; merge?: string }, unknown];
   "entity.update": [{ index: number; entity: NewEntity; merge?: string }, unknown];
-  "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeEdit }, unknown];
+  "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeEdit; merge?: string }, unknown];
   "entity.reset_attribute": [{ indices: number[]; name: string }, unknown];
   "entity.lock": [{ indices: number[]; locked: boolean }, unknown];
   "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
@@ -260,9 +275,12 @@ export interface Commands {
   "simulation.step": [{ count?: number }, unknown];
   "simulation.reset": [Record<string, never>, unknown];
   "simulation.keep": [Record<string, never>, unknown];
-  "simulation.grab": [{ index: number; point: Vector; target: Vector }, unknown];
-  "simulation.move_grab": [{ target: Vector }, unknown];
-  "simulation.release": [Record<string, never>, unknown];
+  "simulation.grab": [{ index: number; point: Vector; target: Vector; hand?: string; rotation?: Quaternion; strength?: number }, unknown];
+  "simulation.move_grab": [{ target: Vector; rotation?: Quaternion; hand?: string }, unknown];
+  "simulation.release": [{ hand?: string }, unknown];
+  "simulation.touch": [{ hand: string; position?: Vector; rotation?: Quaternion; radius?: number }, unknown];
+  "client.present": [Presence, unknown];
+  "entity.lock": [{ indices: number[]; locked: boolean }, unknown];
   "debug.draw": [{ show: readonly DebugName[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];
 }
@@ -334,5 +352,7 @@ export type ServerEvent =
   | ({ event: "question" } & Question)
   | { event: "question_over"; question: number }
   | { event: "rope_broke"; index: number; segment: number; tension: number; position: Vector }
+  | { event: "impacts"; impacts: Impact[] }
+  | { event: "hand"; hand: string; impulse: number; index: number; other: number; position: Vector }
   | { event: "action"; name: string; id: number; sender: number; receiver: number }
   | { event: "message"; level: "info" | "warning" | "error"; text: string };

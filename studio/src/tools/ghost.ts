@@ -13,6 +13,19 @@ const FARTHEST_GROUND = 100;
 const STEEPEST_FLOOR = 0.5;
 const UP = new Vector3(0, 1, 0);
 
+/** Where a thing with this box about its origin lies on a surface: the place of its origin. */
+export function restOn(bounds: Box3, point: Vector3, normal: Vector3, place: Vector3): Vector3 {
+  place.copy(point);
+  if (normal.y > STEEPEST_FLOOR) {
+    place.y -= bounds.min.y;
+    return place;
+  }
+  // At a wall or ceiling it is moved away from the surface by the depth that would be behind it.
+  const half = bounds.getSize(new Vector3()).multiplyScalar(0.5);
+  const reach = Math.abs(normal.x) * half.x + Math.abs(normal.y) * half.y + Math.abs(normal.z) * half.z;
+  return place.addScaledVector(normal, reach).sub(bounds.getCenter(new Vector3()));
+}
+
 /** A half transparent preview of an entity on the surface under the pointer. The server places the real entity. */
 export class Ghost {
   private readonly group = new Group();
@@ -20,6 +33,9 @@ export class Ghost {
   private drawable: Drawable | null = null;
   /** Box around the drawn entity, rotated as the entity will be. */
   private readonly bounds = new Box3();
+  /** The same before it was turned by hand. */
+  private readonly upright = new Box3();
+  private readonly spin = new Matrix4();
 
   constructor(private readonly parts: Pick<Parts, "models" | "view">) {
     this.group.visible = false;
@@ -32,7 +48,8 @@ export class Ghost {
     const drawable = entity.model ? await this.parts.models.drawable(entity.model) : drawShape(entity.shape!);
     this.drawable = drawable;
     const turn = new Matrix4().makeRotationFromQuaternion(new Quaternion(...rotationOf(entity.pose)));
-    this.bounds.copy(drawable.bounds).applyMatrix4(turn);
+    this.upright.copy(drawable.bounds).applyMatrix4(turn);
+    this.bounds.copy(this.upright);
     for (const part of drawable.parts) {
       const mesh = new Mesh(part.geometry, this.material);
       mesh.matrixAutoUpdate = false;
@@ -43,20 +60,23 @@ export class Ghost {
 
   /** Moves the ghost to the surface under the pointer. */
   moveTo(clientX: number, clientY: number): void {
-    const { view } = this.parts;
-    if (!this.drawable) return;
     const { point, normal } = this.landing(clientX, clientY);
-    const { bounds } = this;
-    this.group.position.copy(point);
-    if (normal.y > STEEPEST_FLOOR) this.group.position.y -= bounds.min.y;
-    else {
-      // At a wall or ceiling it is moved away from the surface by the depth that would be behind it.
-      const half = bounds.getSize(new Vector3()).multiplyScalar(0.5);
-      const reach = Math.abs(normal.x) * half.x + Math.abs(normal.y) * half.y + Math.abs(normal.z) * half.z;
-      this.group.position.addScaledVector(normal, reach).sub(bounds.getCenter(new Vector3()));
-    }
+    this.lay(point, normal);
+  }
+
+  /** Moves the ghost to a point of a surface. */
+  lay(point: Vector3, normal: Vector3): void {
+    if (!this.drawable) return;
+    restOn(this.bounds, point, normal, this.group.position);
     this.group.visible = true;
-    view.invalidate();
+    this.parts.view.invalidate();
+  }
+
+  /** Turns the ghost about the vertical from how it began, rad. */
+  turnTo(angle: number): void {
+    if (this.group.rotation.y === angle || !this.drawable) return;
+    this.group.rotation.y = angle;
+    this.bounds.copy(this.upright).applyMatrix4(this.spin.makeRotationY(angle));
   }
 
   hide(): void {
@@ -66,6 +86,7 @@ export class Ghost {
 
   end(): void {
     this.group.clear();
+    this.group.rotation.y = 0;
     this.drawable = null;
     this.hide();
   }

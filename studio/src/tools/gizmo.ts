@@ -121,19 +121,8 @@ export class Gizmo {
     const drag = this.drag;
     this.drag = null;
     if (!drag) return;
-    if (this.tool === "scale") void this.scaleBy(this.pivot.scale.x, drag);
+    if (this.tool === "scale") void scaleEntities(this.parts, drag, this.pivot.scale.x);
     else void drag.end();
-  }
-
-  private async scaleBy(factor: number, drag: PoseDrag): Promise<void> {
-    const merge = `scale-${Date.now()}`;
-    for (const index of drag.start.keys()) {
-      const entity = this.parts.document.entity(index);
-      const shape = entity?.shape && scaledShape(entity.shape, factor);
-      const changed = entity?.model ? { scale: (entity.scale ?? 1) * factor } : shape && { shape };
-      if (changed) await this.parts.server.command("entity.update", { index, entity: changed, merge });
-    }
-    await drag.end();
   }
 
   private applySnap(): void {
@@ -143,6 +132,17 @@ export class Gizmo {
     this.controls.setRotationSnap(snap ? (preferences.get("snapAngle") * Math.PI) / 180 : null);
     this.controls.setScaleSnap(snap ? 0.1 : null);
   }
+}
+
+/** Makes what is dragged larger by a factor, in the drag's own step of undo, and ends the drag. */
+export async function scaleEntities(parts: Pick<Parts, "server" | "document">, drag: PoseDrag, factor: number): Promise<void> {
+  for (const index of drag.start.keys()) {
+    const entity = parts.document.entity(index);
+    const shape = entity?.shape && scaledShape(entity.shape, factor);
+    const changed = entity?.model ? { scale: (entity.scale ?? 1) * factor } : shape && { shape };
+    if (changed) await parts.server.command("entity.update", { index, entity: changed, merge: drag.merge });
+  }
+  await drag.end();
 }
 
 /** A primitive of another size; undefined for what cannot be scaled, such as planes. */

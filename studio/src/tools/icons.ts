@@ -32,19 +32,41 @@ const ICONS = {
   lock: "M3.5 7.5h9v6.5h-9zM5.5 7.5V5a2.5 2.5 0 0 1 5 0v2.5",
   unlock: "M3.5 7.5h9v6.5h-9zM5.5 7.5V4.5a2.5 2.5 0 0 1 4.9-.7",
   camera: "M2 5h3l1.2-2h3.6L11 5h3v8H2zM8 6.5a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.8z",
+  copy: "M5.5 5.5h8v8h-8zM10.5 5.5v-3h-8v8h3",
+  lock: "M3.5 7.5h9v6h-9zM5.5 7.5V5a2.5 2.5 0 0 1 5 0v2.5M8 10v1.5",
+  unlock: "M3.5 7.5h9v6h-9zM5.5 7.5V5a2.5 2.5 0 0 1 4.8-1M8 10v1.5",
+  tape: "M1.5 6h13v4.5h-13zM4 6v2M6.5 6v3M9 6v2M11.5 6v3",
+  house: "M2 7.5L8 2.5l6 5M3.5 6.5v7h9v-7M6.5 13.5v-4h3v4",
+  person: "M8 2a1.6 1.6 0 1 0 0 3.2A1.6 1.6 0 0 0 8 2zM5 6.5h6M8 5.5v5M8 10.5l-2 4M8 10.5l2 4",
+  models: "M8 2l5.5 3v6L8 14l-5.5-3V5zM8 8v6M8 8L2.5 5M8 8l5.5-3M5.2 3.5l5.6 3",
+  sliders: "M3 2.5v11M8 2.5v11M13 2.5v11M1.5 10h3M6.5 5h3M11.5 9h3",
+  gear: "M8 5.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5zM8 1.5v2M8 12.5v2M1.5 8h2M12.5 8h2M3.4 3.4l1.4 1.4M11.2 11.2l1.4 1.4M3.4 12.6l1.4-1.4M11.2 4.8l1.4-1.4",
+  leave: "M9 2.5H3v11h6M6.5 8h7.5M11.5 5.5L14 8l-2.5 2.5",
+  microphone: "M8 1.8a2 2 0 0 0-2 2v4a2 2 0 0 0 4 0v-4a2 2 0 0 0-2-2zM3.8 7.5a4.2 4.2 0 0 0 8.4 0M8 11.7v2.5",
+  search: "M7 2.5a4.5 4.5 0 1 0 0 9 4.5 4.5 0 0 0 0-9zM10.3 10.3l3.7 3.7",
+  backspace: "M5.5 3.5h9v9h-9L1.5 8zM8 6l4 4M12 6l-4 4",
+  up: "M3.5 10.5L8 5.5l4.5 5",
+  down: "M3.5 5.5l4.5 5 4.5-5",
+  drop: "M8 2v8M5 7.5L8 10.5l3-3M2.5 13.5h11",
 } as const;
 
 export type IconName = keyof typeof ICONS;
 
+/** The strokes of an icon on a 16 × 16 grid, and whether they are filled. */
+export function strokesOf(name: IconName): { path: string; filled: boolean } {
+  const strokes: string = ICONS[name];
+  const filled = strokes.startsWith("!");
+  return { path: filled ? strokes.slice(1) : strokes, filled };
+}
+
 export function icon(name: IconName): SVGSVGElement {
   const drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
-  const strokes: string = ICONS[name];
-  const filled = strokes.startsWith("!");
+  const { path: strokes, filled } = strokesOf(name);
   drawing.setAttribute("viewBox", "0 0 16 16");
   drawing.setAttribute("aria-hidden", "true");
   drawing.setAttribute("class", filled ? "icon icon-filled" : "icon");
-  path.setAttribute("d", filled ? strokes.slice(1) : strokes);
+  path.setAttribute("d", strokes);
   drawing.append(path);
   return drawing;
 }

@@ -31,7 +31,7 @@ export function presentPoses(parts: Pick<Parts, "entities">, indices: Iterable<n
 export class PoseDrag {
   private static count = 0;
   readonly start: ReadonlyMap<number, HeldPose>;
-  private readonly merge = `drag-${Date.now()}-${PoseDrag.count++}`;
+  readonly merge = `drag-${Date.now()}-${PoseDrag.count++}`;
   private sending: Promise<unknown> | null = null;
   private newer = false;
 

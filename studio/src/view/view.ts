@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { type InstancedMesh, type Intersection, Matrix4, NeutralToneMapping, PCFShadowMap, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { type Color, type InstancedMesh, type Intersection, Matrix4, NeutralToneMapping, PCFShadowMap, type PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { Motion } from "../document/motion";
 import { Signal } from "../signal";
 import type { Batch } from "./batch";
@@ -19,6 +19,13 @@ export interface Hit {
   index: number;
   point: Vector3;
   normal: Vector3;
+  distance: number;
+}
+
+/** A headset that shows the scene: its camera, and the place that light and shadows are made for. */
+export interface Headset {
+  readonly camera: PerspectiveCamera;
+  readonly target: Vector3;
   distance: number;
 }
 
@@ -44,12 +51,16 @@ export class View {
   readonly people: PeopleView;
   /** Sent just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
+  /** Sent after a picture was drawn, while it can still be read. */
+  readonly afterFrame = new Signal<void>();
   /** Drawing was slow for the last SLOW_PICTURES pictures; sent once. */
   readonly slow = new Signal<void>();
   /** Pictures drawn so far. */
   frames = 0;
   /** Shortest time between pictures of a moving scene, ms; what the user does is drawn at once. */
   pace = 0;
+  private headset: Headset | null = null;
+  private background: Color | null = null;
   private waiting = 0;
   private still = 0;
   /** The present picture was drawn at the higher resolution. */
@@ -65,6 +76,7 @@ export class View {
   private pixelRatio = 1;
   private readonly size = new Vector2();
   private readonly raycaster = new Raycaster();
+  private readonly hits: Intersection[] = [];
   private readonly instance = new Matrix4();
 
   constructor(
@@ -153,12 +165,20 @@ export class View {
     });
   }
 
-  /** In a headset the device asks for every picture. */
-  drawForHeadset(): void {
+  /** In a headset the device asks for every picture; through `seesThrough` the real room is behind the scene. */
+  drawForHeadset(headset: Headset, seesThrough: boolean): void {
+    this.headset = headset;
+    if (seesThrough) {
+      this.background = this.scene.background as Color;
+      this.scene.background = null;
+    }
     this.renderer.setAnimationLoop((now: number) => this.draw(now));
   }
 
   endHeadset(): void {
+    this.headset = null;
+    if (this.background) this.scene.background = this.background;
+    this.background = null;
     this.renderer.setAnimationLoop(null);
     this.asked = false;
     this.resize();
@@ -167,14 +187,16 @@ export class View {
   /** The nearest entity under a point of the page, or null; entities of `ignore` are skipped. */
   pick(clientX: number, clientY: number, ignore?: ReadonlySet<number>): Hit | null {
     this.aim(clientX, clientY);
-    const hits: Intersection[] = this.raycaster.intersectObject(this.entities.group, true);
-    for (const hit of hits) {
-      const batch = hit.object.userData["batch"] as Pick<Batch, "entityAt"> | undefined;
-      const index = batch?.entityAt(hit.instanceId ?? -1);
-      if (index === undefined || ignore?.has(index)) continue;
-      return { index, point: hit.point, normal: this.worldNormal(hit), distance: hit.distance };
-    }
-    return null;
+    return this.firstHit(ignore);
+  }
+
+  /** The nearest entity that a ray meets within `reach` metres, or null. */
+  cast(origin: Vector3, direction: Vector3, reach = Infinity, ignore?: ReadonlySet<number>): Hit | null {
+    this.raycaster.set(origin, direction);
+    this.raycaster.far = reach;
+    const hit = this.firstHit(ignore);
+    this.raycaster.far = Infinity;
+    return hit;
   }
 
   /** The ray from the eye through a point of the page. */
@@ -197,12 +219,24 @@ export class View {
     return new Vector2(frame.left + (0.5 + 0.5 * seen.x) * frame.width, frame.top + (0.5 - 0.5 * seen.y) * frame.height);
   }
 
+  private firstHit(ignore?: ReadonlySet<number>): Hit | null {
+    this.hits.length = 0;
+    this.raycaster.intersectObject(this.entities.group, true, this.hits);
+    for (const hit of this.hits) {
+      const batch = hit.object.userData["batch"] as Pick<Batch, "entityAt"> | undefined;
+      const index = batch?.entityAt(hit.instanceId ?? -1);
+      if (index === undefined || ignore?.has(index)) continue;
+      return { index, point: hit.point, normal: this.worldNormal(hit), distance: hit.distance };
+    }
+    return null;
+  }
+
   private draw(now: number): void {
     this.asked = false;
     if (this.halted) return;
     if (this.isFine) this.setFine(false);
     const seconds = Math.min((now - this.lastFrame) / 1000, LONGEST_STEP_S);
-    this.watchPace(now - this.lastFrame);
+    if (!this.headset) this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
     const moving = [this.motion.advance(now), this.entities.advance(now)].includes(true);
@@ -211,12 +245,14 @@ export class View {
     this.collision.update(now);
     this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
-    const peopleMove = this.people.advance(now, this.rig.camera, this.size, this.canvas.clientHeight);
-    const sunMoved = this.environment.follow(this.rig.target, this.rig.distance);
+    const peopleMove = this.people.advance(now, this.headset?.camera ?? this.rig.camera, this.size, this.canvas.clientHeight);
+    const { target, distance } = this.headset ?? this.rig;
+    const sunMoved = this.environment.follow(target, distance);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
     this.entities.shadowsAreOld = false;
-    this.renderer.render(this.scene, this.rig.camera);
+    this.renderer.render(this.scene, this.headset?.camera ?? this.rig.camera);
     ++this.frames;
+    this.afterFrame.emit();
     this.goesOn = flying || moving || peopleMove;
     if (flying || peopleMove) this.invalidate();
     else if (moving) this.drawSoon();

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+import { Matrix4, Quaternion, Vector3 } from "three";
+import type { Parts } from "../parts";
+import type { IconName } from "../tools/icons";
+import type { UserAction } from "../tools/actions";
+import type { Hands } from "./hand";
+import type { Stance } from "./stance";
+import type { Desk } from "./ui/desk";
+import { Panel } from "./ui/panel";
+import { button, type ButtonOptions, type Widget } from "./ui/widgets";
+
+/** mm */
+const WIDTH = 268;
+const HEIGHT = 176;
+const CELL = 50;
+const GAP = 3;
+const EDGE = 6;
+/** Where it is on the left hand, m in the grip's frame, and how it is turned there: over the wrist, facing the eyes. */
+const ON_GRIP = new Vector3(0.0, 0.06, 0.11);
+const TURN_GRIP = new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), -0.9);
+/** It shows while its face is turned to the eyes and the eyes to it: cosines of the greatest angles, to show and to hide. */
+const FACES = 0.7;
+const LOOKS = 0.82;
+const LEAVES = 0.55;
+
+/** What the menu can do beside the actions of the page. */
+export interface MenuChoices {
+  leave(): void;
+  save(): void;
+  toggleDollhouse(): void;
+  openModels(): void;
+  openProperties(): void;
+  openSettings(): void;
+  toggleTape(): void;
+  readonly tapeOn: boolean;
+  readonly dollhouse: boolean;
+}
+
+/** The menu over the left wrist: shown when looked at, or before the user by a button. */
+export class WristMenu {
+  readonly panel = new Panel({ id: "wrist", title: "Menu", width: WIDTH, height: HEIGHT });
+  /** Opened by the button: it stays where it is until the button is pressed again. */
+  private isPinned = false;
+  private readonly toEyes = new Vector3();
+  private readonly face = new Vector3();
+  private readonly gaze = new Vector3();
+  private readonly matrix = new Matrix4();
+
+  constructor(
+    private readonly parts: Pick<Parts, "document" | "playback" | "preferences" | "selection">,
+    private readonly desk: Desk,
+    private readonly stance: Stance,
+    private readonly actions: readonly UserAction[],
+    private readonly choices: MenuChoices,
+  ) {
+    desk.add(this.panel);
+    for (const signal of [parts.playback.changed, parts.selection.changed]) signal.on(() => this.renew());
+    parts.document.changed.on(() => this.renew());
+    parts.preferences.changed.on(() => this.renew());
+    this.renew();
+  }
+
+  renew(): void {
+    this.panel.widgets = this.layOut();
+    this.panel.renew();
+  }
+
+  /** The button of the left controller. */
+  toggle(): void {
+    this.isPinned = !this.isPinned;
+    if (this.isPinned) this.desk.open(this.panel, -0.12);
+    else this.panel.show(false);
+  }
+
+  update(hands: Hands): void {
+    if (this.isPinned) return;
+    const { left } = hands;
+    const { panel } = this;
+    if (!left.seen) {
+      if (panel.isShown) panel.show(false);
+      return;
+    }
+    this.placeOn(left.isTracked ? (left.joints.joints["wrist"]?.matrix ?? left.ray.matrix) : (left.grip.visible ? left.grip : left.ray).matrix);
+    const { head } = this.stance;
+    this.toEyes.copy(head.position).sub(panel.mesh.position).normalize();
+    this.face.set(0, 0, 1).applyQuaternion(panel.mesh.quaternion);
+    this.gaze.set(0, 0, -1).applyQuaternion(head.quaternion);
+    const faces = this.face.dot(this.toEyes);
+    const looks = -this.gaze.dot(this.toEyes);
+    if (!panel.isShown && faces > FACES && looks > LOOKS) panel.show(true);
+    else if (panel.isShown && (faces < LEAVES || looks < LEAVES)) panel.show(false);
+  }
+
+  private placeOn(grip: Matrix4): void {
+    const { mesh } = this.panel;
+    mesh.position.copy(ON_GRIP);
+    mesh.quaternion.copy(TURN_GRIP);
+    mesh.scale.setScalar(1);
+    mesh.updateMatrix();
+    this.matrix.multiplyMatrices(grip, mesh.matrix);
+    this.matrix.decompose(mesh.position, mesh.quaternion, mesh.scale);
+  }
+
+  private layOut(): Widget[] {
+    const { choices } = this;
+    const playing = this.parts.playback.playing;
+    const of = (id: string, label: string, icon?: IconName): Omit<ButtonOptions, "box"> => {
+      const action = this.actions.find((each) => each.id === id);
+      return { id, label, icon: icon ?? action?.icon, off: !action || !(action.possible?.() ?? true), on: id === "tool.snap" && action?.on?.() === true, run: () => action?.run() };
+    };
+    const rows: Omit<ButtonOptions, "box">[][] = [
+      [
+        { ...of("simulation.play", playing ? "Pause" : "Play", playing ? "pause" : "play"), color: "accent" },
+        of("simulation.step", "Step"),
+        of("simulation.reset", "Reset"),
+        of("simulation.keep", "Settle"),
+        { id: "save", label: "Save", icon: "save", run: () => choices.save() },
+      ],
+      [
+        of("edit.undo", "Undo"),
+        of("edit.redo", "Redo"),
+        of("tool.snap", "Snap"),
+        { id: "tape", label: "Measure", icon: "tape", on: choices.tapeOn, run: () => choices.toggleTape() },
+        { id: "dollhouse", label: choices.dollhouse ? "Life-size" : "1 : 10", icon: choices.dollhouse ? "person" : "house", on: choices.dollhouse, run: () => choices.toggleDollhouse() },
+      ],
+      [
+        { id: "models", label: "Models", icon: "models", run: () => choices.openModels() },
+        { id: "properties", label: "Properties", icon: "sliders", off: this.parts.selection.indices.length === 0, run: () => choices.openProperties() },
+        of("edit.delete", "Delete"),
+        { id: "settings", label: "Moving", icon: "gear", run: () => choices.openSettings() },
+        { id: "leave", label: "Leave", icon: "leave", run: () => choices.leave() },
+      ],
+    ];
+    return rows.flatMap((row, line) => row.map((each, column) => button({ ...each, box: { x: EDGE + column * (CELL + GAP), y: EDGE + line * (CELL + GAP + 2), w: CELL, h: CELL + 2 } })));
+  }
+}
