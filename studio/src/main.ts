@@ -70,7 +70,7 @@ function start(): void {
       browser.focusSearch();
     },
   });
-  actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions) });
+  actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
   new Keyboard(studio, actions, pointer);
   new FileDrop(studio, () => browser.refresh());
@@ -99,6 +99,7 @@ function start(): void {
   });
   const sounds = new ContactSounds(studio);
   const headset = new VrSession(studio, actions, sounds);
+  headset.changed.on(() => gizmo.show(!headset.isRunning));
   const headsetButtons = new HeadsetButtons(studio, headset);
   scene.append(headsetButtons.root);
   studio.connection.event.on((event) => {

@@ -281,6 +281,11 @@ export class Studio implements Parts {
       case "rope_broke":
         this.entities.redress(event.index);
         break;
+      case "history":
+        this.document.takeHistory(event);
+        break;
+      case "members":
+      case "presence":
       case "action":
       case "impacts":
       case "hand":

@@ -20,7 +20,15 @@ export async function wearHeadset(page, planes = []) {
       const actuator = device.controllers[side].inputSource.gamepad.hapticActuators[0];
       if (actuator) actuator.pulse = (strength, milliseconds) => (window.pulses.push({ side, strength, milliseconds }), Promise.resolve(true));
     }
-    window.realPlanes = planes;
+    // What the emulator's module of rooms would tell.
+    const found = planes.map(({ label, position: [x, y, z], polygon }) => {
+      const place = new XRRigidTransform({ x, y, z, w: 1 }, { x: 0, y: 0, z: 0, w: 1 });
+      return { transform: place, polygon: polygon.map(([x, z]) => new DOMPointReadOnly(x, 0, z)), semanticLabel: label };
+    });
+    if (found.length > 0) {
+      const sem = { trackedPlanes: new Set(found), trackedMeshes: new Set(), render() {}, environmentCanvas: document.createElement("canvas") };
+      Object.getOwnPropertySymbols(device).forEach((symbol) => device[symbol]?.viewSpaces && (device[symbol].sem = sem));
+    }
   }, planes);
 }
 

@@ -176,13 +176,6 @@ export interface Ray {
   direction: Vector;
 }
 
-/** Where a member is, for the others. */
-export interface Presence {
-  head?: { position: Vector; rotation: Quaternion } | null;
-  hands?: { hand: "left" | "right"; position: Vector; rotation: Quaternion; holds?: number }[];
-  mode?: "page" | "headset";
-}
-
 /** A new contact that can be heard. `a` and `b` are the entities; the impulse in N s. */
 export interface Impact {
   position: Vector;
@@ -279,8 +272,6 @@ export interface Commands {
   "simulation.move_grab": [{ target: Vector; rotation?: Quaternion; hand?: string }, unknown];
   "simulation.release": [{ hand?: string }, unknown];
   "simulation.touch": [{ hand: string; position?: Vector; rotation?: Quaternion; radius?: number }, unknown];
-  "client.present": [Presence, unknown];
-  "entity.lock": [{ indices: number[]; locked: boolean }, unknown];
   "debug.draw": [{ show: readonly DebugName[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];
 }

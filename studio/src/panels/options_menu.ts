@@ -6,6 +6,7 @@ import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 import { numberField } from "./fields";
 import { userNameField } from "./user_name";
+import type { Offer } from "../vr/offer";
 
 const DEBUG_LABELS: Record<DebugName, string> = {
   shapes: "Collision shapes",
@@ -47,7 +48,7 @@ function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): 
 }
 
 /** Options of drawing and snapping; kept in the browser. */
-export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view">, actions: readonly UserAction[]): void {
+export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view">, actions: readonly UserAction[], headset: Offer | null): void {
   const { preferences } = parts;
   const row = (label: string, field: HTMLElement) => element("label", { class: "option" }, field, element("span", {}, label));
   const flip = (id: string): HTMLElement | null => {
@@ -57,6 +58,9 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
     box.checked = action.on?.() ?? false;
     return row(action.label, box);
   };
+  const sounds = element("input", { type: "checkbox", "data-testid": "option-sounds", onchange: () => preferences.set("sounds", sounds.checked) });
+  sounds.checked = preferences.get("sounds");
+  const hint = headset?.why ? element("p", { class: "note", "data-testid": "vr-hint" }, `Headset: ${headset.why}. ${headset.remedy}`) : null;
   const step = numberField("Snap to", "m", (value) => value > 0 && preferences.set("snapLength", value));
   const angle = numberField("Snap to", "°", (value) => value > 0 && preferences.set("snapAngle", value));
   step.set(preferences.get("snapLength"));
@@ -72,6 +76,7 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
       flip("view.fullTint"),
       flip("view.grid"),
       flip("view.collision"),
+      row("Sounds of impacts", sounds),
       flip("view.theme"),
       flip("view.quality"),
       flip("tool.snap"),
@@ -79,6 +84,7 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
       row("Your name in the history of changes", userNameField(parts)),
+      ...(hint ? [hint] : []),
     ),
   );
   dialog.addEventListener("close", inside.end);

@@ -60,6 +60,12 @@ export class Gizmo {
     this.changed.emit();
   }
 
+  /** The handles are for the mouse: in a headset they are taken away. */
+  show(shown: boolean): void {
+    if (shown) this.parts.view.scene.add(this.controls.getHelper());
+    else this.parts.view.scene.remove(this.controls.getHelper());
+  }
+
   setSpace(space: "world" | "local"): void {
     this.space = space;
     this.controls.setSpace(space);

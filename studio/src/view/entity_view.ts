@@ -143,7 +143,8 @@ export class EntityView {
 
   /** Moves points towards their new positions; returns whether any are still moving. */
   advance(now: number): boolean {
-    return [this.clouds.advance(now), this.softs.advance(now, this.motion.moved)].includes(true);
+    const cloudsMove = this.clouds.advance(now);
+    return this.softs.advance(now, this.motion.moved) || cloudsMove;
   }
 
   setQuality(quality: Quality): void {

@@ -239,7 +239,8 @@ export class View {
     if (!this.headset) this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
-    const moving = [this.motion.advance(now), this.entities.advance(now)].includes(true);
+    const bodiesMove = this.motion.advance(now);
+    const moving = this.entities.advance(now) || bodiesMove;
     this.beforeFrame.emit(now);
     this.entities.update(now);
     this.collision.update(now);

@@ -47,6 +47,7 @@ export class Hand {
   readonly squeeze = new Button();
   readonly lower = new Button();
   readonly upper = new Button();
+  private readonly buttons = [this.trigger, this.squeeze, this.lower, this.upper] as const;
   stickX = 0;
   stickY = 0;
   /** How far the trigger is pulled, 0 … 1. */
@@ -88,14 +89,14 @@ export class Hand {
       this.upper.tell(pad?.buttons[UPPER]?.pressed ?? false);
       if (pad?.buttons[SQUEEZE]) this.squeeze.tell(pad.buttons[SQUEEZE].pressed);
     } else this.squeeze.tell(this.isFist());
-    for (const button of [this.trigger, this.squeeze, this.lower, this.upper]) button.update();
+    for (const button of this.buttons) button.update();
     if (this.seen) this.readPoses(isTracked);
   }
 
   /** Forgets what was pressed: the device went away. */
   drop(): void {
     this.source = null;
-    for (const button of [this.trigger, this.squeeze, this.lower, this.upper]) button.tell(false);
+    for (const button of this.buttons) button.tell(false);
   }
 
   /** Shakes the controller; strength 0 … 1. */

@@ -2,9 +2,9 @@
 import { CapsuleGeometry, Color, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, LatheGeometry, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector2, Vector3 } from "three";
 import type { Hand } from "./hand";
 
-const BODY = new MeshStandardMaterial({ color: 0x2c323c, roughness: 0.55, metalness: 0.1 });
-const FACE = new MeshStandardMaterial({ color: 0x1b1f25, roughness: 0.4 });
-const KNOB = new MeshStandardMaterial({ color: 0xa3adba, roughness: 0.6 });
+const BODY = new MeshStandardMaterial({ color: 0x565f6c, roughness: 0.55, metalness: 0.1 });
+const FACE = new MeshStandardMaterial({ color: 0x3a424e, roughness: 0.45 });
+const KNOB = new MeshStandardMaterial({ color: 0xd5dce5, roughness: 0.6 });
 const ACCENT = new MeshStandardMaterial({ color: 0xff9d2e, roughness: 0.5, emissive: 0xff9d2e, emissiveIntensity: 0.25 });
 const SKIN = new MeshStandardMaterial({ color: 0xb9c4d2, roughness: 0.75 });
 
@@ -32,11 +32,11 @@ class ControllerLook {
 
   constructor(side: Hand["side"]) {
     const inward = side === "left" ? 1 : -1;
-    const handle = new Mesh(new CapsuleGeometry(0.0155, 0.075, 6, 20), BODY);
+    const handle = new Mesh(new CapsuleGeometry(0.0175, 0.058, 8, 24), BODY);
     handle.rotation.x = Math.PI / 2 - 0.25;
-    handle.position.set(0, -0.004, 0.022);
+    handle.position.set(0, -0.006, 0.01);
     // A flat disc with a round rim, turned about its axis.
-    const rim = [[0, 0.006], [0.021, 0.006], [0.0255, 0.003], [0.0265, -0.002], [0.024, -0.0075], [0, -0.012]].map(([x, y]) => new Vector2(x, y));
+    const rim = [[0, -0.012], [0.024, -0.0075], [0.0265, -0.002], [0.0255, 0.003], [0.021, 0.006], [0, 0.006]].map(([x, y]) => new Vector2(x, y));
     const face = new Group();
     face.position.set(0, 0.012, -0.032);
     face.rotation.x = 0.35;

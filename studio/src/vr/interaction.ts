@@ -54,7 +54,9 @@ export class Interaction {
   private readonly label = new TextLabel();
   private readonly size = new Vector3();
   private readonly place = new Vector3();
-  private outlined = "";
+  /** What is outlined beside the selection, and that selection. */
+  private readonly outlined = [-1, -1];
+  private chosen: readonly number[] = [];
   private picture = 0;
 
   constructor(
@@ -89,7 +91,7 @@ export class Interaction {
   end(): void {
     for (const { ray } of Object.values(this.aims)) ray.hide();
     this.label.hide();
-    this.outlined = "";
+    this.outlined.fill(-1);
     this.parts.view.outline.show(this.parts.selection.indices);
   }
 
@@ -156,8 +158,7 @@ export class Interaction {
     for (const hand of this.tools.hands.both) this.drawRay(hand);
     this.outline();
     this.drawLabel();
-    const right = this.aims.right.hit ?? null;
-    this.tools.tape.update(this.tools.hands.right, right?.point ?? null);
+    this.tools.tape.update(this.tools.hands.right, this.aims.right.hit?.point ?? null);
   }
 
   private drawRay(hand: Hand): void {
@@ -181,14 +182,20 @@ export class Interaction {
 
   /** Outlines the selection and what the hands could grab now. */
   private outline(): void {
-    const { left, right } = this.aims;
-    const of = (aim: Aim): number => aim.near ?? (aim.hit && isMovable(this.parts, aim.hit.index) ? aim.hit.index : -1);
-    const [a, b] = [of(left), of(right)];
+    const a = this.grabbable(this.aims.left);
+    const b = this.grabbable(this.aims.right);
     const { indices } = this.parts.selection;
-    const key = `${a} ${b} ${indices.length} ${indices.at(-1) ?? -1}`;
-    if (key === this.outlined) return;
-    this.outlined = key;
+    const { outlined } = this;
+    if (outlined[0] === a && outlined[1] === b && this.chosen === indices) return;
+    outlined[0] = a;
+    outlined[1] = b;
+    this.chosen = indices;
     this.parts.view.outline.show([...new Set([...indices, a, b])].filter((index) => index >= 0));
+  }
+
+  /** What the hand would take now; -1: nothing. */
+  private grabbable({ near, hit }: Aim): number {
+    return near ?? (hit && isMovable(this.parts, hit.index) ? hit.index : -1);
   }
 
   /** The size of what is held, or the name of what is locked. */

@@ -64,7 +64,7 @@ export class ModelPanel {
   }
 
   open(): void {
-    this.desk.open(this.panel, -0.08);
+    this.desk.open(this.panel, -0.27);
     void this.begin();
   }
 

@@ -19,7 +19,7 @@ const partInverse = new Matrix4();
 
 /** Whether the user has locked the entity in its place. */
 export function isLocked(entity: Entity | undefined): boolean {
-  return (entity as { locked?: boolean } | undefined)?.locked === true;
+  return entity?.locked === true;
 }
 
 /** Whether a hand may move it now: nothing locked or endless, and in a run only what moves. */

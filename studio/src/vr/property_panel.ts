@@ -59,7 +59,7 @@ export class PropertyPanel {
   }
 
   open(): void {
-    this.desk.open(this.panel, 0.1);
+    this.desk.open(this.panel, 0.27);
     void this.refresh();
   }
 

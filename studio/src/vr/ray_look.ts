@@ -3,7 +3,7 @@ import { BufferGeometry, Color, CylinderGeometry, Float32BufferAttribute, Group,
 
 const FORTH = new Vector3(0, 0, 1);
 /** Thickness of the ray, and radius of the mark at its end as a part of its distance, m. */
-const THICKNESS = 0.0012;
+const THICKNESS = 0.002;
 const MARK = 0.011;
 /** A ray that meets nothing ends so far away, m of the room. */
 const FREE_END = 2.5;

@@ -46,7 +46,6 @@ export class VrSession {
   readonly looks: readonly HandLook[];
   readonly touches: readonly Touch[];
   room: RealRoom | null = null;
-  /** The room whose surfaces the user has not yet decided about: asked on the way out. */
   private readonly models: ModelPanel;
   private readonly properties: PropertyPanel;
   private readonly settings: SettingsPanel;
@@ -75,7 +74,7 @@ export class VrSession {
     view.renderer.xr.enabled = true;
     this.hands = new Hands(view.renderer.xr, stance.origin);
     this.headset = { camera: stance.head, target: new Vector3(), distance: SHADOW_REACH };
-    this.desk = new Desk(this.hands, stance);
+    this.desk = new Desk(this.hands, stance, (side) => this.carry.side === side);
     this.grabbing = new Grabbing(parts, this.hands, stance);
     this.carry = new Carry(parts, this.hands, this.desk, () => stance.scale);
     this.moving = new Moving(parts, this.hands, stance, (hand) => this.desk.isBusy(hand.side) || this.grabbing.held(hand.side) !== null || this.carry.side === hand.side);
@@ -142,10 +141,12 @@ export class VrSession {
   }
 
   openModels(): void {
+    this.menu.unpin();
     this.models.toggle();
   }
 
   openProperties(): void {
+    this.menu.unpin();
     this.properties.toggle();
   }
 
@@ -219,8 +220,15 @@ export class VrSession {
 
   /** The first picture: the user stands on the floor below the desktop's camera and looks where it looked. */
   private place(): void {
-    this.placed = true;
     const { stance, parts } = this;
+    const { xr } = parts.view.renderer;
+    const space = xr.getReferenceSpace();
+    const pose = space && xr.getFrame()?.getViewerPose(space);
+    if (!pose) return;
+    this.placed = true;
+    const { position, orientation } = pose.transform;
+    stance.head.position.copy(position);
+    stance.head.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w);
     const { camera } = parts.view.rig;
     const settings = parts.preferences.get("vr");
     this.eye.copy(camera.position);
@@ -265,8 +273,9 @@ export class VrSession {
       const saved = await server.command("scene.save", name === undefined ? {} : { name });
       if (saved) notices.tell({ level: "info", text: `Saved “${saved.name}”` });
     };
-    if (scene.name) void save();
-    else this.ask.ask("Save the scene as", scene.title, (name) => void save(name));
+    if (scene.name) return void save();
+    this.menu.unpin();
+    this.ask.ask("Save the scene as", scene.title, (name) => void save(name));
   }
 
   private choices(): ConstructorParameters<typeof WristMenu>[4] {
@@ -277,7 +286,10 @@ export class VrSession {
       toggleDollhouse: () => this.toggleDollhouse(),
       openModels: () => this.openModels(),
       openProperties: () => this.openProperties(),
-      openSettings: () => this.settings.open(),
+      openSettings: () => {
+        this.menu.unpin();
+        this.settings.open();
+      },
       toggleTape: () => {
         this.tape.toggle();
         this.menu.renew();

@@ -52,7 +52,7 @@ export class SettingsPanel {
   }
 
   open(): void {
-    this.desk.open(this.panel, 0.1);
+    this.desk.open(this.panel, 0);
   }
 
   private set(change: Partial<VrSettings>): void {

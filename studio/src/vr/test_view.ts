@@ -14,8 +14,8 @@ export interface VrHook {
   toRoom(point: Three): Three;
   toScene(point: Three): Three;
   hands(): { side: string; drawn: string | null; position: Three; holds: number | null; hit: number | null; near: number | null; ray: boolean }[];
-  /** Widgets of all panels that are shown, with their middle in the user's room. */
-  widgets(): { panel: string; id: string; off: boolean; at: Three; size: Three }[];
+  /** Widgets of all panels that are shown, with their middle and the ends of their middle line in the user's room. */
+  widgets(): { panel: string; id: string; off: boolean; at: Three; from: Three; to: Three; size: Three }[];
   /** Text of the label in the scene, and of the tape. */
   label(): string;
   tape(): { text: string; length: number | null };
@@ -54,7 +54,9 @@ export function vrHook(parts: Pick<Parts, "view">, session: VrSession): VrHook {
             panel: panel.options.id,
             id: widget.id,
             off: widget.off ?? false,
-            at: stance.origin.worldToLocal(panel.placeOf(widget, new Vector3())).toArray(),
+            at: stance.origin.worldToLocal(panel.placeOf(widget, 0.5, new Vector3())).toArray(),
+            from: stance.origin.worldToLocal(panel.placeOf(widget, 0, new Vector3())).toArray(),
+            to: stance.origin.worldToLocal(panel.placeOf(widget, 1, new Vector3())).toArray(),
             size: [widget.box.w, widget.box.h],
           })),
         ),

@@ -79,7 +79,7 @@ function field(id: string, text: string): Widget {
 
 /** A short message before the user's eyes that goes by itself. */
 export class MessagePanel {
-  readonly panel = new Panel({ id: "message", title: "", width: 340, height: 84 });
+  readonly panel = new Panel({ id: "message", title: "", width: 340, height: 84, isPassive: true });
   private left = 0;
 
   constructor(private readonly desk: Desk) {

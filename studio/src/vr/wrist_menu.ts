@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { Matrix4, Quaternion, Vector3 } from "three";
+import { Matrix4, Vector3 } from "three";
 import type { Parts } from "../parts";
 import type { IconName } from "../tools/icons";
 import type { UserAction } from "../tools/actions";
@@ -15,10 +15,9 @@ const HEIGHT = 176;
 const CELL = 50;
 const GAP = 3;
 const EDGE = 6;
-/** Where it is on the left hand, m in the grip's frame, and how it is turned there: over the wrist, facing the eyes. */
-const ON_GRIP = new Vector3(0.0, 0.06, 0.11);
-const TURN_GRIP = new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), -0.9);
-/** It shows while its face is turned to the eyes and the eyes to it: cosines of the greatest angles, to show and to hide. */
+/** So far above the hand, m. */
+const ABOVE = 0.13;
+/** It shows while the back of the hand is turned to the eyes, as for reading a watch, and the eyes to it: cosines of the greatest angles, to show and to hide. */
 const FACES = 0.7;
 const LOOKS = 0.82;
 const LEAVES = 0.55;
@@ -54,7 +53,7 @@ export class WristMenu {
     private readonly choices: MenuChoices,
   ) {
     desk.add(this.panel);
-    for (const signal of [parts.playback.changed, parts.selection.changed]) signal.on(() => this.renew());
+    for (const signal of [parts.playback.changed, parts.selection.changed, parts.document.historyChanged]) signal.on(() => this.renew());
     parts.document.changed.on(() => this.renew());
     parts.preferences.changed.on(() => this.renew());
     this.renew();
@@ -72,6 +71,13 @@ export class WristMenu {
     else this.panel.show(false);
   }
 
+  /** Another panel takes its place. */
+  unpin(): void {
+    if (!this.isPinned) return;
+    this.isPinned = false;
+    this.panel.show(false);
+  }
+
   update(hands: Hands): void {
     if (this.isPinned) return;
     const { left } = hands;
@@ -80,25 +86,21 @@ export class WristMenu {
       if (panel.isShown) panel.show(false);
       return;
     }
-    this.placeOn(left.isTracked ? (left.joints.joints["wrist"]?.matrix ?? left.ray.matrix) : (left.grip.visible ? left.grip : left.ray).matrix);
+    // The back of a left hand: +Y of a tracked wrist, -X of a grip.
+    const held = left.isTracked ? (left.joints.joints["wrist"] ?? left.ray) : left.grip.visible ? left.grip : left.ray;
+    this.face.set(left.isTracked ? 0 : -1, left.isTracked ? 1 : 0, 0).applyQuaternion(held.quaternion);
     const { head } = this.stance;
-    this.toEyes.copy(head.position).sub(panel.mesh.position).normalize();
-    this.face.set(0, 0, 1).applyQuaternion(panel.mesh.quaternion);
+    this.toEyes.copy(head.position).sub(held.position).normalize();
     this.gaze.set(0, 0, -1).applyQuaternion(head.quaternion);
     const faces = this.face.dot(this.toEyes);
     const looks = -this.gaze.dot(this.toEyes);
     if (!panel.isShown && faces > FACES && looks > LOOKS) panel.show(true);
     else if (panel.isShown && (faces < LEAVES || looks < LEAVES)) panel.show(false);
-  }
-
-  private placeOn(grip: Matrix4): void {
-    const { mesh } = this.panel;
-    mesh.position.copy(ON_GRIP);
-    mesh.quaternion.copy(TURN_GRIP);
-    mesh.scale.setScalar(1);
-    mesh.updateMatrix();
-    this.matrix.multiplyMatrices(grip, mesh.matrix);
-    this.matrix.decompose(mesh.position, mesh.quaternion, mesh.scale);
+    if (!panel.isShown) return;
+    const { mesh } = panel;
+    mesh.position.copy(held.position);
+    mesh.position.y += ABOVE;
+    mesh.quaternion.setFromRotationMatrix(this.matrix.lookAt(head.position, mesh.position, mesh.up));
   }
 
   private layOut(): Widget[] {

@@ -45,6 +45,8 @@ export class Desk {
   constructor(
     private readonly hands: Hands,
     private readonly stance: Stance,
+    /** Whether the hand carries something: its trigger puts that down. */
+    private readonly isFull: (side: Side) => boolean,
   ) {}
 
   add(panel: Panel): void {
@@ -109,7 +111,7 @@ export class Desk {
     pointing.widget = panel?.widgetAt(pointing.x, pointing.y) ?? null;
     panel?.hover(pointing.widget?.id ?? (this.isOnBar(panel, pointing) ? "bar" : null));
     const pressed = pointing.poking ? this.pokes(hand, pointing) : hand.trigger.pressed;
-    if (pressed && panel) this.press(hand, pointing, panel);
+    if (pressed && panel && !this.isFull(hand.side)) this.press(hand, pointing, panel);
     else if (pointing.down) this.drag(hand, pointing);
     this.turnWheel(hand, pointing, seconds);
   }
@@ -122,7 +124,7 @@ export class Desk {
     const wasPoking = pointing.poking && pointing.down !== null;
     pointing.poking = false;
     for (const panel of this.panels) {
-      if (!panel.isShown) continue;
+      if (!panel.isShown || panel.options.isPassive) continue;
       const { x, y, z } = panel.toLocal(hand.tip);
       if ((Math.abs(z) < POKE_REACH || wasPoking) && inPanel(panel, x, y)) {
         Object.assign(pointing, { panel, x, y, distance: 0 });
@@ -152,7 +154,7 @@ export class Desk {
   }
 
   private isOnBar(panel: Panel, { x, y }: Pointing): boolean {
-    return panel.options.hasBar === true && inBox({ x: 0, y: 0, w: panel.options.width, h: BAR + 4 }, x, y);
+    return panel.options.hasBar === true && y <= BAR + 4 && inPanel(panel, x, y);
   }
 
   private press(hand: Hand, pointing: Pointing, panel: Panel): void {
@@ -218,7 +220,7 @@ export class Desk {
 }
 
 function inPanel({ options }: Panel, x: number, y: number): boolean {
-  return inBox({ x: 0, y: 0, w: options.width, h: options.height }, x, y);
+  return x >= 0 && y >= 0 && x <= options.width && y <= options.height;
 }
 
 function nothing(): Pointing {

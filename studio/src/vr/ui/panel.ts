@@ -17,6 +17,8 @@ export interface PanelOptions {
   height: number;
   /** Has a bar with the title and a button to close it. */
   hasBar?: boolean;
+  /** Only to read: rays go through it. */
+  isPassive?: boolean;
 }
 
 /** A flat panel in the user's room with widgets on it, drawn into a texture. It is painted again only when it changed. */
@@ -82,10 +84,10 @@ export class Panel {
     return null;
   }
 
-  /** The middle of a widget in the scene, for tests and for the keyboard's focus. */
-  placeOf({ box }: Widget, out: Vector3): Vector3 {
+  /** A point of a widget's middle line in the scene: 0 is its left end, 1 its right one. */
+  placeOf({ box }: Widget, part: number, out: Vector3): Vector3 {
     const { width, height } = this.options;
-    out.set((box.x + box.w / 2 - width / 2) / 1000, (height / 2 - box.y - box.h / 2) / 1000, 0);
+    out.set((box.x + part * box.w - width / 2) / 1000, (height / 2 - box.y - box.h / 2) / 1000, 0);
     return out.applyMatrix4(this.mesh.matrixWorld);
   }
 
