@@ -5,6 +5,7 @@ import { after, afterEach, before, beforeEach, describe, it } from "node:test";
 import { Session } from "./session.mjs";
 
 const FLOOR = { index: 1, name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" }, locked: true };
+const EMPTY = { embody_scene: 1, title: "Empty", entities: [FLOOR] };
 const MODELS = 460;
 const BOXES = 400;
 const ALONG = 23;
@@ -13,12 +14,16 @@ describe("large scenes in the Studio", { timeout: 900000 }, () => {
   const session = new Session();
   let page;
 
-  before(() => session.start({ embody_scene: 1, title: "Empty", entities: [FLOOR] }));
+  before(() => session.start(EMPTY));
   after(() => session.end());
   beforeEach(async () => {
     page = await session.reopen();
   });
-  afterEach(() => assert.deepEqual(page.faults, []));
+  // The next page begins with nothing loaded.
+  afterEach(async () => {
+    assert.deepEqual(page.faults, []);
+    await session.command("scene.load", { scene: EMPTY });
+  });
 
   it("loads 460 different models with few requests at once, tells how far it is, and keeps the connection", async () => {
     const keys = [];
@@ -47,15 +52,15 @@ describe("large scenes in the Studio", { timeout: 900000 }, () => {
     const drawn = await page.evaluate(() => window.embody.entities().filter((entity) => entity.drawn).length);
     assert.equal(drawn, MODELS + 1);
     assert.ok(!closed, "the connection was never lost");
-    assert.ok(most <= 6, `${most} models were requested at once`);
+    assert.ok(most > 1 && most <= 6, `${most} models were requested at once`);
     const figures = await page.evaluate(() => window.figures);
     const counts = figures.map((text) => Number(/^Loading models: (\d+) of 460$/.exec(text)?.[1] ?? NaN));
-    assert.ok(counts.length > 50 && counts.every((count, at) => at === 0 || count >= counts[at - 1]), `figures ${figures.slice(0, 5)}`);
+    assert.ok(counts.length > 50 && !counts.includes(NaN) && counts.at(-1) > 400, `figures ${figures.slice(0, 5)}`);
     assert.ok(!(await page.getByTestId("stat-loading").isVisible()));
   });
 
   it("loads what is large and near before what is small and far", async () => {
-    const { models } = await session.command("catalog.search", { words: "chair", limit: 40 });
+    const { models } = await session.command("catalog.search", { limit: 60 });
     const order = [];
     page.on("request", (request) => {
       const id = /models\/(\d+)\/geometry/.exec(request.url())?.[1];
@@ -63,7 +68,7 @@ describe("large scenes in the Studio", { timeout: 900000 }, () => {
     });
     // The nearest stands last in the list.
     const entities = models.map(({ key }, at) => ({ index: 2 + at, model: key, pose: { position: [0, 0, -6 * (models.length - at)] } }));
-    const scene = { embody_scene: 1, title: "A row of chairs", entities: [FLOOR, ...entities], camera: { position: [0, 1.5, 4], target: [0, 0.5, 0] } };
+    const scene = { embody_scene: 1, title: "A row of models", entities: [FLOOR, ...entities], camera: { position: [0, 1.5, 4], target: [0, 0.5, 0] } };
     await session.command("scene.load", { scene });
     await page.waitForFunction((count) => window.embody.entities().length === count && window.embody.loading() === 0, entities.length + 1, { timeout: 60000 });
     const ids = models.map(({ id }) => id);

@@ -59,8 +59,10 @@ export class EntityView {
   readonly softs: SoftBodies;
   private readonly batches = new Map<string, Batch>();
   private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
-  private pending = 0;
-  private begun = 0;
+  /** How often each entity is being loaded now: a soft one for its model and for its mesh. */
+  private readonly pending = new Map<number, number>();
+  /** Entities that were begun since nothing was loading. */
+  private readonly begun = new Set<number>();
   /** Where the eye is: what is large or near is loaded first. */
   private readonly eye = new Vector3();
 
@@ -89,14 +91,14 @@ export class EntityView {
     });
   }
 
-  /** Number of entities whose models are being loaded. */
+  /** Number of entities that are being loaded. */
   get loading(): number {
-    return this.pending;
+    return this.pending.size;
   }
 
   /** How many of those that were begun since nothing was loading. */
   get loadingOf(): number {
-    return this.begun;
+    return this.begun.size;
   }
 
   lookFrom(eye: Vector3): void {
@@ -233,7 +235,7 @@ export class EntityView {
 
   private async putModel(entity: Entity, key: string): Promise<void> {
     if (this.keep(entity, key)) return;
-    this.begin();
+    this.begin(entity.index);
     try {
       const place = new Vector3(...positionOf(entity.pose));
       const drawable = await this.models.drawable(key, (size) => (size * (entity.scale ?? 1)) / Math.max(place.distanceTo(this.eye), NEAREST));
@@ -243,17 +245,23 @@ export class EntityView {
       if (this.document.entity(entity.index) === entity) this.join(entity, "placeholder", () => PLACEHOLDER);
       this.failed.emit({ index: entity.index, reason: (error as Error).message });
     }
-    this.end();
+    this.end(entity.index);
   }
 
-  private begin(): void {
-    if (this.pending++ === 0) this.begun = 0;
-    ++this.begun;
-    if (this.pending === 1) this.loadingBegan.emit();
+  private begin(index: number): void {
+    // Told once the others of the same turn have begun, too.
+    if (this.pending.size === 0) {
+      this.begun.clear();
+      queueMicrotask(() => this.loadingBegan.emit());
+    }
+    this.begun.add(index);
+    this.pending.set(index, (this.pending.get(index) ?? 0) + 1);
   }
 
-  private end(): void {
-    --this.pending;
+  private end(index: number): void {
+    const left = (this.pending.get(index) ?? 1) - 1;
+    if (left > 0) this.pending.set(index, left);
+    else this.pending.delete(index);
     this.loaded.emit();
   }
 
@@ -261,7 +269,7 @@ export class EntityView {
     const { index, model, scale } = entity;
     const key = `soft ${index} ${scale ?? 1} ${model ?? shapeKey(entity.shape!)}`;
     if (this.softs.skinOf(index) && this.keep(entity, key)) return;
-    this.begin();
+    this.begin(index);
     try {
       const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
       const skin = await this.softs.dress(index, plain, scale ?? 1, this.quality);
@@ -277,7 +285,7 @@ export class EntityView {
     } catch (error) {
       this.failed.emit({ index, reason: (error as Error).message });
     }
-    this.end();
+    this.end(index);
   }
 
   /** Keeps an entity that looks as before in its batch; false where it looks different. */
