@@ -29,8 +29,8 @@ export interface PreferenceValues {
   userName: string;
   /** The user was asked for a name when somebody else came. */
   nameAsked: boolean;
-  /** Recovered scenes that the user wants to see later, by name: they are not offered again. */
-  recoveriesKept: string[];
+  /** Recovered scenes that the user knows of, by name: they are not offered again. */
+  recoveriesKnown: string[];
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
   /** Impacts are heard. */
@@ -54,7 +54,7 @@ const DEFAULTS: PreferenceValues = {
   recent: [],
   userName: "",
   nameAsked: false,
-  recoveriesKept: [],
+  recoveriesKnown: [],
   keys: {},
   sounds: true,
   vr: VR_DEFAULTS,

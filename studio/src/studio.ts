@@ -308,7 +308,15 @@ export class Studio implements Parts {
       this.entities.forgetPoints();
     }
     this.document.apply(event);
-    if (isOther) this.framing.open();
+    if (!isOther) return;
+    this.framing.open();
+    void this.knowRecoveries();
+  }
+
+  /** Unsaved work that was left while this page looked on need not be offered when it is loaded again. */
+  private async knowRecoveries(): Promise<void> {
+    const answer = await this.server.command("scene.list", {});
+    if (answer) this.preferences.set("recoveriesKnown", answer.scenes.filter(({ kind }) => kind === "recovery").map(({ name }) => name));
   }
 
   private takeSimulation({ state, time, step }: Simulation): void {

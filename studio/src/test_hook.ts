@@ -43,6 +43,8 @@ export interface TestHook {
   readonly vr: VrHook;
   /** Sounds of impacts that were made, the newest last. */
   heard(): readonly Heard[];
+  /** Draws the other people or not: pictures of two pages differ by them. */
+  showPeople(shown: boolean): void;
   /** Stops drawing, for screenshots; resume() starts it again. */
   halt(): void;
   resume(): void;
@@ -99,6 +101,10 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     }),
     vr: vrHook(studio, headset),
     heard: () => sounds.heard,
+    showPeople: (shown) => {
+      studio.view.people.group.visible = shown;
+      studio.view.invalidate();
+    },
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),
   };

@@ -53,10 +53,11 @@ export async function takePicture(page, path) {
   await page.evaluate(() => window.embody.resume());
 }
 
-/** A picture of the drawn scene, without the panels. */
+/** A picture of the drawn scene, without the panels and the other people. */
 export async function pictureOfScene(page) {
   // Without the ring around the focused element.
   await page.evaluate(() => document.activeElement?.blur());
+  await page.evaluate(() => window.embody.showPeople(false));
   await page.waitForTimeout(500);
   await page.evaluate(() => window.embody.halt());
   // And without messages that lie over it. The page's policy allows no style element, but a sheet that a script makes.
@@ -67,6 +68,7 @@ export async function pictureOfScene(page) {
   });
   const picture = await page.getByTestId("canvas").screenshot();
   await page.evaluate(() => (document.adoptedStyleSheets = []));
+  await page.evaluate(() => window.embody.showPeople(true));
   await page.evaluate(() => window.embody.resume());
   return picture;
 }

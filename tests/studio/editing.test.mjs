@@ -134,12 +134,14 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
     const kinds = ["rigid", "static", "soft", "cloth", "rope", "granular", "fluid"];
     const half = { cloth: [0.2, 0.005, 0.2] };
     const made = kinds.map((kind, at) => ({ index: 10 + at, name: kind, shape: { type: "box", half_extents: half[kind] ?? [0.2, 0.2, 0.2] }, pose: { position: [1.5 * at, 2, 0] }, attributes: { kind } }));
+    const shapes = { capsule: { radius: 0.1, half_height: 0.2 }, cone: { radius: 0.2, half_height: 0.2 }, plane: { normal: [0, 1, 0], offset: -3 } };
+    const primitives = Object.entries(shapes).map(([type, lengths], at) => ({ index: 20 + at, name: type, shape: { type, ...lengths }, pose: { position: [1.5 * at, 4, 0] }, ...(type === "plane" && { attributes: { kind: "static" } }) }));
     const { models } = await session.command("catalog.search", { words: "chair", limit: 1 });
-    const all = { ...ROOM, title: "All kinds", entities: [...ROOM.entities, ...made, { index: 30, model: models[0].key, pose: { position: [0, 0, 3] } }] };
+    const all = { ...ROOM, title: "All kinds", entities: [...ROOM.entities, ...made, ...primitives, { index: 30, model: models[0].key, pose: { position: [0, 0, 3] } }] };
     await session.command("scene.load", { scene: all });
     await page.waitForFunction((count) => window.embody.entities().length === count, all.entities.length);
-    const expected = { static: 15, rigid: 20, soft: 15, cloth: 15, rope: 15, granular: 15, fluid: 15, chair: 20 };
-    for (const { index, name = "chair" } of [...made, ...ROOM.entities.slice(1).map((each) => ({ ...each, name: "rigid" })), { index: 30 }]) {
+    const expected = { static: 15, rigid: 20, soft: 15, cloth: 15, rope: 15, granular: 15, fluid: 15, chair: 20, capsule: 20, cone: 20, plane: 8 };
+    for (const { index, name = "chair" } of [...made, ...primitives, ...ROOM.entities.slice(1).map((each) => ({ ...each, name: "rigid" })), { index: 30 }]) {
       await choose(index);
       await page.waitForFunction(([index, least]) => window.embody.selection()[0] === index && document.querySelectorAll("[data-testid=attributes] .attribute").length >= least, [index, expected[name]]);
       await page.evaluate(() => document.querySelectorAll("details").forEach((each) => (each.open = true)));
@@ -160,7 +162,7 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
     await page.getByTestId("canvas").focus();
     await page.keyboard.press("l");
     await until((all) => all[0].locked === true, "the floor is locked");
-    assert.equal(await page.getByTestId("lock-1").getAttribute("aria-pressed"), "true");
+    await page.waitForFunction(() => document.querySelector("[data-testid=lock-1]").getAttribute("aria-pressed") === "true");
     assert.equal(await page.getByTestId("entity-lock").getAttribute("aria-label"), "Unlock");
 
     // The handles do not attach: a drag from its middle turns the camera.
@@ -196,8 +198,11 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
     await until((all) => all.length === ROOM.entities.length - 1 && all.some(({ index }) => index === 1), "the box is gone, the floor stays");
     await page.getByTestId("toast-action").click();
     await until((all) => !all.find(({ index }) => index === 1).locked, "unlocked by the message");
-    await page.getByTestId("lock-3").click({ force: true });
+    await page.getByTestId("lock-3").focus();
+    await page.keyboard.press("Enter");
     await until((all) => all.find(({ index }) => index === 3).locked, "locked by the padlock of the list");
+    // The keyboard stays there.
+    await page.waitForFunction(() => document.activeElement.dataset.testid === "lock-3" && document.activeElement.getAttribute("aria-pressed") === "true");
   });
 
   it("does not move what is locked by numbers, and says so", async () => {

@@ -171,6 +171,40 @@ describe("people in a session", { timeout: 900000 }, () => {
     assert.ok(Math.abs((await ann.evaluate(() => window.embody.entities().find(({ index }) => index === 3).position[1])) - 4) < 1e-3);
   });
 
+  it("warns before unsaved work is left only where nobody else is here", async () => {
+    const warns = () =>
+      ann.evaluate(() => {
+        const leaving = new Event("beforeunload", { cancelable: true });
+        dispatchEvent(leaving);
+        return leaving.defaultPrevented;
+      });
+    assert.equal(await warns(), false, "nothing is unsaved");
+    await move(ann, 2, 1);
+    assert.equal(await warns(), false, "Ben keeps the scene open");
+    await ben.context().close();
+    await ann.waitForFunction(() => window.embody.people().others.length === 0);
+    assert.equal(await warns(), true);
+    ben = await open("Ben Smith");
+  });
+
+  it("draws head and hands of somebody in a headset", async () => {
+    await ann.evaluate(async () => {
+      const socket = new WebSocket(`ws://${location.host}/ws`);
+      await new Promise((opened) => (socket.onopen = opened));
+      const send = (id, command, params) => socket.send(JSON.stringify({ id, command, params }));
+      send(1, "hello", { person: "headset" });
+      const place = (x) => ({ position: [x, 1.2, 0.3], rotation: [0, 0, 0, 1] });
+      send(2, "client.present", { mode: "headset", head: { position: [0, 1.6, 0.5], rotation: [0, 0, 0, 1] }, hands: [{ hand: "left", ...place(-0.3) }, { hand: "right", ...place(0.3), holds: 2 }] });
+      window.headset = socket;
+    });
+    await ann.waitForFunction(() => window.embody.people().others.some(({ drawn, presence }) => drawn && presence.head && presence.hands?.length === 2));
+    const { client } = (await ann.evaluate(() => window.embody.people().others)).find(({ presence }) => presence.head);
+    await ann.getByTestId(`person-${client}`).click();
+    await ann.waitForFunction(() => Math.hypot(...window.embody.camera().position.map((at, axis) => at - [0, 1.6, 0.5][axis])) < 0.01);
+    await ann.evaluate(() => window.headset.close());
+    await ann.waitForFunction(() => window.embody.people().others.length === 1);
+  });
+
   it("is the same person after a reload, and another one in a second tab", async () => {
     await move(ann, 2, 1);
     const person = () => ann.evaluate(() => sessionStorage.getItem("embody.person"));

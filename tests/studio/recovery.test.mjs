@@ -107,6 +107,9 @@ describe("saving and recovering", { timeout: 900000 }, () => {
     assert.match(await dialog.innerText(), /Room to lose.*recovered scenes/);
     await page.getByTestId("leave-scene").click();
     await page.waitForFunction(() => !window.embody.entities().some(({ name }) => name === "Box"));
+    await page.reload();
+    await page.waitForFunction(() => window.embody?.connected());
+    assert.equal(await page.getByTestId("recovery-dialog").count(), 0, "whoever left it knows of it");
     await page.getByTestId("scene.open").click();
     const kept = page.locator("[data-testid^='scene-autosave/']", { hasText: "Room to lose" });
     await kept.first().click();

@@ -6,7 +6,7 @@ import { openDialog } from "./dialogs";
 import { element } from "./element";
 
 const MOUSE: readonly (readonly [string, string])[] = [
-  ["Left drag on empty space", "turn the view"],
+  ["Left drag on empty space, or on a locked thing", "turn the view"],
   ["Middle drag, or Shift + left drag", "move the view"],
   ["Wheel", "go nearer or farther"],
   ["Right drag, with W A S D Q E", "look around and fly"],
@@ -14,6 +14,13 @@ const MOUSE: readonly (readonly [string, string])[] = [
   ["Ctrl + drag", "select what is in the rectangle"],
   ["Left drag on a body while playing", "pull it with a spring"],
   ["Left drag on a body with the move tool", "slide it sideways at its height"],
+];
+
+const PEOPLE: readonly (readonly [string, string])[] = [
+  ["Initials at the top", "a click looks where that person looks; on your own it changes your name"],
+  ["Undo and redo", "take back what you did, not what others did"],
+  ["New and open", "ask the others first: the scene is everybody's"],
+  ["Unsaved work", "is kept by itself, and found again under Open a scene"],
 ];
 
 const STATES: readonly (readonly [string, string, string])[] = [
@@ -47,6 +54,7 @@ export function openHelp(parts: Pick<Parts, "preferences">, actions: readonly Us
       "div",
       { class: "help-columns" },
       section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
+      section("With others", PEOPLE.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
       section("Soft things, cloth, ropes, liquids, grains", MATTER.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
       section("Tint of things while there is a simulation", [
         ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),

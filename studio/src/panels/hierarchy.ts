@@ -33,8 +33,18 @@ export class Hierarchy {
     const rows = all.slice(0, MOST_ROWS).map((entity) => this.row(entity));
     if (all.length > MOST_ROWS) rows.push(element("li", { class: "note" }, `… and ${all.length - MOST_ROWS} more: type a part of a name`));
     if (all.length === 0) rows.push(element("li", { class: "note" }, words ? "Nothing in the scene has that name" : "The scene is empty"));
+    const focused = this.focused();
     this.list.replaceChildren(...rows);
+    if (focused) this.list.querySelector<HTMLElement>(focused)?.focus();
     this.mark();
+  }
+
+  /** A selector of the row or padlock that has the keyboard's focus, which new rows would lose; else null. */
+  private focused(): string | null {
+    const { activeElement } = document;
+    const row = this.list.contains(activeElement) ? activeElement!.closest<HTMLElement>("[data-index]") : null;
+    if (!row) return null;
+    return `[data-index="${row.dataset["index"]}"]${activeElement === row ? "" : " .padlock"}`;
   }
 
   private row(entity: Entity): HTMLElement {

@@ -14,12 +14,10 @@ export async function discardRecovery(parts: Pick<Parts, "server">, name: string
   return (await parts.server.command("scene.discard", { name })) !== undefined;
 }
 
-/** Offers the recoveries that the user did not put off before; `open` opens one of them. */
+/** Offers the recoveries that the user does not know of; `open` opens one of them. */
 export function offerRecoveries(parts: Pick<Parts, "preferences" | "server">, found: readonly Recovery[], open: (name: string) => void): void {
-  const put = parts.preferences.get("recoveriesKept");
-  const fresh = found.filter(({ name }) => !put.includes(name));
-  // Names of what is gone are forgotten.
-  const keep = (names: readonly Recovery[]) => parts.preferences.set("recoveriesKept", names.map(({ name }) => name));
+  const known = parts.preferences.get("recoveriesKnown");
+  const fresh = found.filter(({ name }) => !known.includes(name));
   if (fresh.length === 0 || document.querySelector("[data-testid=recovery-dialog]")) return;
 
   const list = element("ul", { class: "recoveries" });
@@ -46,6 +44,7 @@ export function offerRecoveries(parts: Pick<Parts, "preferences" | "server">, fo
     element("p", { class: "note" }, "What you keep for later is under “Recovered” in “Open a scene”."),
     dialogButtons(element("button", { "data-testid": "recovery-later", onclick: () => dialog.close() }, "Keep for later")),
   );
-  dialog.addEventListener("close", () => keep(found));
+  // Names of what is gone are forgotten.
+  dialog.addEventListener("close", () => parts.preferences.set("recoveriesKnown", found.map(({ name }) => name)));
   list.querySelector("button")?.focus();
 }

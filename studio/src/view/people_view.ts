@@ -93,7 +93,7 @@ class Figure {
     this.outline = new Outline(entities, color, layer);
     this.material = new MeshLambertMaterial({ color: new Color(color) });
     this.head.add(new Mesh(HEAD, this.material), new Mesh(VISOR, DARK));
-    this.headTag = nameTag(name, color, 1.1);
+    this.headTag = nameTag(name, color, 0.35);
     this.dot = pointerDot(color);
     this.dotTag = nameTag(name, color, 0.6);
     this.group.add(this.head, this.headTag.sprite, this.dot.sprite, this.dotTag.sprite, this.outline.group);
