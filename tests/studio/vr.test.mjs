@@ -595,6 +595,7 @@ describe("what a hand feels and what is heard", { timeout: 300000 }, () => {
 
   before(async () => {
     server = new MockServer();
+    for (const name of ["simulation.grab", "simulation.move_grab", "simulation.release", "simulation.touch", "client.present"]) server.commands[name] = () => ({});
     const address = await server.start();
     browser = await openBrowser();
     page = await openStudio(browser, address, { width: 960, height: 480, prepare: (made) => wearHeadset(made) });
@@ -604,7 +605,8 @@ describe("what a hand feels and what is heard", { timeout: 300000 }, () => {
     await browser?.close();
     await server?.stop();
   });
-  const tell = (event) => server.sockets.clients.forEach((socket) => socket.send(JSON.stringify(event)));
+  const tell = (event) => server.broadcast(event);
+  const until = (test, argument) => page.waitForFunction(test, argument, { timeout: 30000 });
   const heard = () => page.evaluate(() => window.embody.heard());
 
   it("an impact sounds by its impulse, higher for small things, and not where sounds are off", async () => {
@@ -665,5 +667,40 @@ describe("what a hand feels and what is heard", { timeout: 300000 }, () => {
     const most = [...by].sort((a, b) => b[1] - a[1]).slice(0, 6).map(([name, size]) => `${name} ${Math.round(size / pictures)}`);
     // At 72 pictures a second 3 kB fill the young half of the heap, 16 MB, once in more than a minute.
     assert.ok(bytes < 3000, `${Math.round(bytes)} bytes a picture: ${most.join(", ")}`);
+  });
+
+  it("each hand pulls with a hold of its own while it plays, with the set strength, and lets go", async () => {
+    const sent = (command, hand) => server.log.filter((each) => each.command === command && each.params.hand === hand).map(({ params }) => params);
+    await headset.click("close");
+    await headset.press("left", "x-button");
+    await headset.click("simulation.play");
+    await page.waitForFunction(() => window.embody.simulation().state === "playing");
+    await headset.press("left", "x-button");
+    await until(() => window.embody.entities().find(({ index }) => index === 2).state === 2);
+    const at = await headset.toRoom([0, 0.2, 0]);
+    await headset.place("right", [at[0] + 0.2, at[1] + 0.1, at[2]]);
+    await headset.place("left", [at[0] - 0.2, at[1] + 0.1, at[2]]);
+    await headset.frames(8);
+    assert.ok(sent("simulation.touch", "right").at(-1).radius > 0.02, "an empty hand is a ball that pushes");
+    await headset.set("right", "squeeze", 1);
+    const [grab] = sent("simulation.grab", "right");
+    assert.equal(grab.index, 2);
+    assert.equal(grab.strength, 400);
+    assert.equal(sent("simulation.touch", "right").at(-1).position, undefined, "a hand that holds touches nothing");
+    await headset.sweep("right", [at[0] + 0.2, at[1] + 0.5, at[2] - 0.3], 5, [0, Math.sin(0.3), 0, Math.cos(0.3)]);
+    const moved = sent("simulation.move_grab", "right").at(-1);
+    near(moved.target, (await headset.hand("right")).position, 0.02, "the point that is held goes with the hand");
+    assert.ok(Math.abs(2 * Math.asin(moved.rotation[1]) - 0.6) < 0.05, `the hand turns it: ${moved.rotation}`);
+    await headset.set("left", "squeeze", 1);
+    assert.equal(sent("simulation.grab", "left").at(-1).index, 2, "the other hand holds it too");
+    await headset.sweep("left", [at[0] - 0.2, at[1] + 0.3, at[2]], 3);
+    const turn = (hand) => sent("simulation.move_grab", hand).at(-1).rotation;
+    near(turn("left"), turn("right"), 0.02, "two hands on one thing agree how it is turned");
+    await headset.set("left", "squeeze", 0);
+    await headset.set("right", "squeeze", 0);
+    await page.waitForTimeout(300);
+    assert.equal(sent("simulation.release", "right").length, 1);
+    assert.equal(sent("simulation.release", "left").length, 1);
+    assert.deepEqual(page.faults, []);
   });
 });

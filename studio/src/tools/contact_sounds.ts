@@ -24,11 +24,11 @@ export type RingName = keyof typeof RINGS;
 
 /** Words in the names of surface materials, and what they ring like. */
 const SOUNDS_LIKE: readonly (readonly [RegExp, RingName])[] = [
-  [/steel|iron|metal|alumin|brass|copper|chrome|silver|gold|tin|zinc/, "metal"],
-  [/glass|porcelain|ceramic|crystal|mirror/, "glass"],
-  [/stone|concrete|marble|brick|granite|tile|plaster|earth/, "stone"],
-  [/textile|fabric|cloth|leather|foam|rubber|cotton|wool|paper|cardboard|carpet|skin|food|plant|wax|water/, "soft"],
-  [/plastic|acryl|poly|pvc|vinyl|nylon/, "plastic"],
+  [/steel|iron|alumin|brass|lead|titanium|metal/, "metal"],
+  [/glass|ceramic|ice|crystal/, "glass"],
+  [/stone|concrete|brick|plaster|asphalt|coal/, "stone"],
+  [/fabric|leather|foam|rubber|paper|cardboard|cork|flesh|plant|food|fruit|bread|cheese|wax|soil|grain|hay|powder/, "soft"],
+  [/plastic|composite|epoxy/, "plastic"],
 ];
 const USUAL: RingName = "wood";
 /** Length of the things that RINGS is for, m, and the least and greatest pitch, Hz. */

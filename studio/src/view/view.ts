@@ -234,7 +234,7 @@ export class View {
   private draw(now: number): void {
     this.asked = false;
     if (this.halted) return;
-    if (this.isFine) this.setFine(false);
+    if (this.isFine && !this.headset) this.setFine(false);
     const seconds = Math.min((now - this.lastFrame) / 1000, LONGEST_STEP_S);
     if (!this.headset) this.watchPace(now - this.lastFrame);
     this.lastFrame = now;

@@ -19,6 +19,8 @@ const TILE = 80;
 const COLUMNS = 4;
 const ROWS = 3;
 const PAGE = COLUMNS * ROWS;
+/** Below the keyboard one row of tiles is seen. */
+const KEYS_END = BAR + 262;
 const NAMES_SHOWN = 9;
 const NAME_HEIGHT = 30;
 const SEARCH_DELAY_MS = 250;
@@ -136,7 +138,9 @@ export class ModelPanel {
       Desk.closer(this.panel),
       ...this.searchRow(),
       ...this.names(),
-      ...(this.types ? this.keys() : [...shown, ...this.pager(), ...this.nothing(shown.length)]),
+      ...(this.types ? [...this.keys(), ...shown.slice(0, COLUMNS)] : shown),
+      ...this.pager(),
+      ...(shown.length === 0 && !this.types ? this.nothing() : []),
     ];
     this.panel.renew();
   }
@@ -189,7 +193,7 @@ export class ModelPanel {
       this.layOut();
     };
     return keyboard({
-      box: { x: LIST + 16, y: BAR + 52, w: WIDTH - LIST - 28, h: 190 },
+      box: { x: LIST + 16, y: BAR + 52, w: WIDTH - LIST - 28, h: KEYS_END - BAR - 60 },
       type: (text) => this.setWords(this.words + text),
       erase: () => this.setWords(this.words.slice(0, -1)),
       done: close,
@@ -218,15 +222,14 @@ export class ModelPanel {
     ];
   }
 
-  private nothing(shown: number): Widget[] {
-    if (shown > 0) return [];
+  private nothing(): Widget[] {
     const text = this.words ? `No model matches “${this.words}”. Try fewer or shorter words, or another category.` : this.category === RECENT ? "What you add appears here." : this.category === FAVOURITES ? "Mark models with the star in the page's browser." : "No models yet: run “embody import”.";
     return [label("empty", { x: LIST + 24, y: BAR + 70, w: WIDTH - LIST - 44, h: 80 }, text, { size: TEXT, color: "dim", rows: 4 })];
   }
 
   private tileBox(at: number): Box {
     const width = (WIDTH - LIST - 28 - (COLUMNS - 1) * 5) / COLUMNS;
-    return { x: LIST + 16 + (at % COLUMNS) * (width + 5), y: BAR + 52 + Math.floor(at / COLUMNS) * (TILE + 24), w: width, h: TILE + 19 };
+    return { x: LIST + 16 + (at % COLUMNS) * (width + 5), y: (this.types ? KEYS_END : BAR + 52) + Math.floor(at / COLUMNS) * (TILE + 24), w: width, h: TILE + 19 };
   }
 
   /** Pressed and pulled off the panel, or clicked: it is in the hand. */
