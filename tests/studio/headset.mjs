@@ -139,6 +139,27 @@ export class Headset {
     await this.frames(2);
   }
 
+  /** Moves a hand evenly by the page's own clock, m/s in the room, for so long, and lets a button go in full motion. */
+  async swing(side, velocity, seconds, button) {
+    await this.page.evaluate(
+      ([side, velocity, seconds, button]) =>
+        new Promise((done) => {
+          const controller = window.device.controllers[side];
+          const from = [...controller.position.vec3];
+          const start = performance.now();
+          const step = () => {
+            const time = (performance.now() - start) / 1000;
+            controller.position.set(...from.map((each, axis) => each + velocity[axis] * time));
+            if (time > seconds) controller.updateButtonValue(button, 0);
+            if (time > seconds + 0.3) done();
+            else requestAnimationFrame(step);
+          };
+          step();
+        }),
+      [side, velocity, seconds, button],
+    );
+  }
+
   async set(side, button, value) {
     await this.page.evaluate(([side, button, value]) => window.device.controllers[side].updateButtonValue(button, value), [side, button, value]);
     await this.frames(3);

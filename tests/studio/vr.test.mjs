@@ -416,6 +416,23 @@ describe("the Studio in a headset", { timeout: 1500000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
+  it("finds a model by a word that it hears", async () => {
+    await page.addInitScript(() => {
+      window.SpeechRecognition = window.webkitSpeechRecognition = class {
+        start() {
+          setTimeout(() => (this.onresult({ results: [[{ transcript: "Vase" }]] }), this.onend()), 50);
+        }
+      };
+    });
+    await page.reload();
+    await until(() => window.embody?.connected());
+    await headset.enter();
+    await headset.press("left", "y-button");
+    await headset.click("search");
+    await headset.click("key-listen");
+    await until(() => window.embody.vr.widgets().some(({ id }) => id.startsWith("tile-") && /vase/i.test(id)));
+  });
+
   it("a clicked tile is in the hand until the next press; over the panel it goes back", async () => {
     await headset.enter();
     await headset.press("left", "y-button");
@@ -486,7 +503,16 @@ describe("the Studio in a headset", { timeout: 1500000 }, () => {
     assert.equal(text, `${(100 * length).toFixed(1)} cm`);
   });
 
-  it("all panels' buttons are at least 2.5 cm wide and high", async () => {
+  it("all panels' buttons are at least 2.5 cm wide and high, and letters 1.2° at 0.6 m", async () => {
+    await page.evaluate(() => {
+      const write = CanvasRenderingContext2D.prototype.fillText;
+      window.smallest = Infinity;
+      // A panel's canvas is drawn in millimetres.
+      CanvasRenderingContext2D.prototype.fillText = function (...rest) {
+        window.smallest = Math.min(window.smallest, parseFloat(this.font.match(/([\d.]+)px/)[1]));
+        return write.apply(this, rest);
+      };
+    });
     await headset.enter();
     await headset.aim("right", [0.25, 0.8, 0.18]);
     await headset.press("right");
@@ -498,6 +524,9 @@ describe("the Studio in a headset", { timeout: 1500000 }, () => {
     await look();
     await headset.click("settings");
     await look();
+    await headset.click("controls");
+    await look();
+    await headset.click("close");
     await headset.press("left", "y-button");
     await headset.press("right", "a-button");
     await headset.widget("slider-mass");
@@ -505,6 +534,8 @@ describe("the Studio in a headset", { timeout: 1500000 }, () => {
     await headset.click("search");
     await look();
     assert.deepEqual([...small], []);
+    const smallest = await page.evaluate(() => window.smallest);
+    assert.ok(smallest >= 600 * Math.tan((1.2 * Math.PI) / 180), `letters of ${smallest} mm`);
   });
 
   it("pinches with tracked hands: takes, carries, presses, and goes where the pinch points", async () => {
@@ -586,6 +617,92 @@ describe("the Studio in the real room", { timeout: 300000 }, () => {
     await headset.frames(5);
     assert.equal((await named("Real")).length, 0);
     await headset.leave();
+  });
+});
+
+describe("hands in a run", { timeout: 600000 }, () => {
+  const session = new Session();
+  let page, headset;
+
+  before(() => session.start(SCENE));
+  after(() => session.end());
+
+  // The scene plays, with these settings of this user.
+  async function play(vr = {}) {
+    page = await session.reopen({ width: 960, height: 480, prepare: (made) => wearHeadset(made) });
+    await page.evaluate((vr) => localStorage.setItem("embody.preferences", JSON.stringify({ vr })), vr);
+    await page.reload();
+    await page.waitForFunction(() => window.embody?.connected());
+    headset = new Headset(page);
+    await headset.enter();
+    await session.command("simulation.reset");
+    await session.command("simulation.play");
+    await page.waitForFunction(() => window.embody.simulation().state === "playing" && window.embody.simulation().time > 0.3);
+  }
+  const placeOf = (index) => page.evaluate((index) => window.embody.entities().find((each) => each.index === index).position, index);
+
+  // The hand is where the thing is, and takes it; the result is where the hand is in the room.
+  async function take(side, index) {
+    const at = await headset.toRoom(await placeOf(index));
+    await headset.place(side, at);
+    await headset.frames(6);
+    await headset.set(side, "squeeze", 1);
+    assert.equal((await headset.hand(side)).holds, index);
+    return at;
+  }
+
+  it("a thing is lifted by the hand and follows it", async () => {
+    await play();
+    const before = await placeOf(BOX);
+    const at = await take("right", BOX);
+    await headset.sweep("right", [at[0], at[1] + 0.4, at[2]], 5);
+    await page.waitForTimeout(800);
+    near(await placeOf(BOX), [before[0], before[1] + 0.4, before[2]], 0.12, "lifted");
+    assert.ok((await page.evaluate(() => window.embody.selection())).includes(BOX));
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("let go in motion it flies on", async () => {
+    await play();
+    const at = await take("right", BOX);
+    await headset.sweep("right", [at[0], at[1] + 0.4, at[2]], 5);
+    await page.waitForTimeout(500);
+    const before = await placeOf(BOX);
+    await headset.swing("right", [0, 1, -2.5], 0.5, "squeeze");
+    await page.waitForFunction((index) => window.embody.entities().find((each) => each.index === index).position[1] < 0.2, BOX, { timeout: 20000 });
+    const [, , z] = await placeOf(BOX);
+    // The hand let go 1.25 m ahead; what it threw lands well beyond.
+    assert.ok(z < before[2] - 1.6, `from ${before[2]} to ${z}`);
+  });
+
+  it("a hand that is set too weak does not lift it", async () => {
+    await play({ strength: 20 });
+    // 0.16 m of the usual material: 4.1 kg need 40 N.
+    const at = await take("right", BOX);
+    await headset.sweep("right", [at[0], at[1] + 0.4, at[2]], 5);
+    await page.waitForTimeout(800);
+    assert.ok((await placeOf(BOX))[1] < 0.9, "it stays on the table");
+  });
+
+  it("an empty hand pushes things and feels it", async () => {
+    await play();
+    await page.evaluate(() => (window.pulses.length = 0));
+    const before = await placeOf(4);
+    const at = await headset.toRoom(before);
+    await headset.place("left", [at[0], at[1] + 0.02, at[2] + 0.35]);
+    await headset.frames(4);
+    await headset.sweep("left", [at[0], at[1] + 0.02, at[2] - 0.15], 10);
+    await page.waitForFunction((z) => window.embody.entities().find(({ index }) => index === 4).position[2] < z - 0.1, before[2]);
+    assert.ok(await page.evaluate(() => window.pulses.some(({ side, milliseconds }) => side === "left" && milliseconds === 40)), "the hand felt it");
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("what falls is heard", async () => {
+    await play();
+    const at = await take("right", BOX);
+    await headset.sweep("right", [at[0], at[1] + 0.4, at[2]], 4);
+    await headset.set("right", "squeeze", 0);
+    await page.waitForFunction(() => window.embody.heard().length > 0, null, { timeout: 20000 });
   });
 });
 

@@ -3,6 +3,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { keyName, keysOf } from "../tools/keys";
 import { openDialog } from "./dialogs";
+import { CONTROLS, HAND_CONTROLS } from "../vr/controls";
 import { element } from "./element";
 
 const MOUSE: readonly (readonly [string, string])[] = [
@@ -56,6 +57,7 @@ export function openHelp(parts: Pick<Parts, "preferences">, actions: readonly Us
       section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
       section("With others", PEOPLE.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
       section("Soft things, cloth, ropes, liquids, grains", MATTER.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
+      section("In a headset", [...CONTROLS, ...HAND_CONTROLS].map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
       section("Tint of things while there is a simulation", [
         ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),
         element("p", { class: "note" }, "The view options colour things all over; T turns it off."),

@@ -242,7 +242,7 @@ export class ModelPanel {
         painter.fill(box, 8, look.pressed ? "line" : look.hover ? "hover" : "raised");
         if (look.hover) painter.outline(box, 8, "accent", 1);
         paint(painter, look);
-        painter.text(name, box.x + box.w / 2, box.y + box.h - 10, { size: SMALL - 1, align: "center", width: box.w - 6 });
+        painter.text(name, box.x + box.w / 2, box.y + box.h - 10, { size: SMALL, align: "center", width: box.w - 6 });
       },
       leave: (side) => take(side, false),
       release: (_x, _y, inside, side) => {

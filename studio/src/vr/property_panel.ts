@@ -140,7 +140,7 @@ export class PropertyPanel {
       label(`value-${name}`, { x: 214, y, w: WIDTH - 228 - 34, h: 20 }, `${short(value)}${unit && unit !== "1" ? ` ${unit}` : ""}`, { size: TEXT - 1, bold: true, align: "right", color: overridden ? "accent" : "text" }),
       slider({ id: `slider-${name}`, box: { x: 10, y: y + 18, w: WIDTH - 58, h: 26 }, part: scale.part(value), likely, change: (part) => this.change(entry, scale.value(part)), end: () => (this.merge = "") }),
       button({ id: `reset-${name}`, box: { x: WIDTH - 42, y: y + 4, w: 30, h: 36 }, icon: "undo", off: !overridden, run: () => void this.reset(name) }),
-      label(`source-${name}`, { x: 14, y: y + 43, w: WIDTH - 28, h: 16 }, source, { size: SMALL - 1, color: why ? "error" : "dim" }),
+      label(`source-${name}`, { x: 14, y: y + 43, w: WIDTH - 28, h: 16 }, source, { size: SMALL, color: why ? "error" : "dim" }),
     ];
   }
 

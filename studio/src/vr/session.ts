@@ -9,6 +9,7 @@ import { Carry } from "./carry";
 import { Grabbing } from "./grabbing";
 import { Hands } from "./hand";
 import { HandLook, setAccent } from "./hand_look";
+import { HelpPanel } from "./help_panel";
 import { Interaction } from "./interaction";
 import { ModelPanel } from "./model_panel";
 import { Moving } from "./moving";
@@ -81,7 +82,8 @@ export class VrSession {
     this.tape = new Tape(stance);
     this.models = new ModelPanel(parts, this.desk, this.carry);
     this.properties = new PropertyPanel(parts, this.desk, actions);
-    this.settings = new SettingsPanel(parts, this.desk);
+    const help = new HelpPanel(this.desk);
+    this.settings = new SettingsPanel(parts, this.desk, () => help.open());
     this.ask = new TextPanel(this.desk);
     this.message = new MessagePanel(this.desk);
     this.menu = new WristMenu(parts, this.desk, stance, actions, this.choices());
@@ -242,6 +244,7 @@ export class VrSession {
     stance.standAt(this.moving.teleport.floorBelow(this.eye, this.feet));
     stance.setLift(settings.heightOffset);
     if (settings.dollhouse && !this.room) this.setDollhouse(true);
+    this.message.tell("info", "Menu: X, or the back of your left wrist. Models: Y", "“Moving” in the menu says what your hands can do.");
   }
 
   private setDollhouse(on: boolean): void {

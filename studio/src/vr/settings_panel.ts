@@ -34,7 +34,7 @@ const CHOICES: readonly (readonly [string, readonly Choice[]])[] = [
   ["Walls", [["walls-stop", "Stop me", ({ walls }) => walls, { walls: true }], ["walls-pass", "Let through", ({ walls }) => !walls, { walls: false }]]],
   ["Shaking", [["haptics-on", "On", ({ haptics }) => haptics, { haptics: true }], ["haptics-off", "Off", ({ haptics }) => !haptics, { haptics: false }]]],
 ];
-const HEIGHT = BAR + 14 + ROW * (RANGES.length + CHOICES.length + 1);
+const HEIGHT = BAR + 14 + ROW * (RANGES.length + CHOICES.length + 2);
 
 /** How the user moves, in the headset; every change is kept at once. */
 export class SettingsPanel {
@@ -43,6 +43,7 @@ export class SettingsPanel {
   constructor(
     private readonly parts: Pick<Parts, "preferences">,
     private readonly desk: Desk,
+    private readonly openHelp: () => void,
   ) {
     desk.add(this.panel);
     parts.preferences.changed.on((name) => {
@@ -53,6 +54,11 @@ export class SettingsPanel {
 
   open(): void {
     this.desk.open(this.panel, 0);
+  }
+
+  private help(): void {
+    this.panel.show(false);
+    this.openHelp();
   }
 
   private set(change: Partial<VrSettings>): void {
@@ -83,6 +89,7 @@ export class SettingsPanel {
       const change = (part: number): void => this.set({ [key]: Number((low + part * (high - low)).toFixed(2)) });
       row(name, slider({ id: key, box, part: (value - low) / (high - low), change }), label(`value-${key}`, { x: WIDTH - 76, y, w: 64, h: ROW - 6 }, text(value), { size: SMALL + 1, align: "right" }));
     }
+    widgets.push(button({ id: "controls", label: "What your hands can do…", icon: "help", wide: true, box: { x: 12, y, w: WIDTH - 24, h: ROW - 6 }, run: () => this.help() }));
     this.panel.widgets = widgets;
     this.panel.renew();
   }

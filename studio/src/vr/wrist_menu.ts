@@ -10,9 +10,10 @@ import { Panel } from "./ui/panel";
 import { button, type ButtonOptions, type Widget } from "./ui/widgets";
 
 /** mm */
-const WIDTH = 268;
-const HEIGHT = 176;
-const CELL = 50;
+const WIDTH = 334;
+const HEIGHT = 172;
+const CELL = 62;
+const TALL = 50;
 const GAP = 3;
 const EDGE = 6;
 /** So far above the hand, m. */
@@ -127,12 +128,12 @@ export class WristMenu {
       ],
       [
         { id: "models", label: "Models", icon: "models", run: () => choices.openModels() },
-        { id: "properties", label: "Properties", icon: "sliders", off: this.parts.selection.indices.length === 0, run: () => choices.openProperties() },
+        { id: "properties", label: "Details", icon: "sliders", off: this.parts.selection.indices.length === 0, run: () => choices.openProperties() },
         of("edit.delete", "Delete"),
         { id: "settings", label: "Moving", icon: "gear", run: () => choices.openSettings() },
         { id: "leave", label: "Leave", icon: "leave", run: () => choices.leave() },
       ],
     ];
-    return rows.flatMap((row, line) => row.map((each, column) => button({ ...each, box: { x: EDGE + column * (CELL + GAP), y: EDGE + line * (CELL + GAP + 2), w: CELL, h: CELL + 2 } })));
+    return rows.flatMap((row, line) => row.map((each, column) => button({ ...each, box: { x: EDGE + column * (CELL + GAP), y: EDGE + line * (TALL + GAP + 2), w: CELL, h: TALL } })));
   }
 }

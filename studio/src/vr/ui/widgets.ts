@@ -66,7 +66,7 @@ function paintButton(painter: Painter, { box, label, icon, on, off, wide, color 
   const middle = y + h / 2;
   if (icon && label && !wide) {
     painter.icon(icon, x + w / 2, y + 0.38 * h, Math.min(0.42 * h, 20), ink);
-    painter.text(label, x + w / 2, y + h - 9, { size: SMALL - 2.5, color: ink, align: "center", width: w - 4 });
+    painter.text(label, x + w / 2, y + h - 10, { size: SMALL, color: ink, align: "center", width: w - 4 });
   } else if (icon && label) {
     painter.icon(icon, x + 15, middle, 16, ink);
     painter.text(label, x + 28, middle + 0.5, { size: SMALL, color: ink, width: w - 32 });
