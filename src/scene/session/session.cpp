@@ -75,9 +75,23 @@ void Session::forget_client(ClientId client) {
 
 void Session::follow_question(std::chrono::steady_clock::time_point now) { scene::follow_question(*state_, now); }
 
-bool Session::follow_catalog() { return follow_changes_of_others(*state_); }
+bool Session::follow_catalog() {
+    const bool has_changed = follow_changes_of_others(*state_);
+    return state_->follow_arrivals() || has_changed;
+}
 
-Events Session::take_events() { return std::exchange(state_->events, {}); }
+std::set<std::string> Session::missing_models() const {
+    std::set<std::string> keys;
+    for (const EntityIndex index : state_->simulation->waiting())
+        if (const Entity* entity = state_->document.find(index))
+            keys.insert(std::get<ModelReference>(entity->geometry).key);
+    return keys;
+}
+
+Events Session::take_events() {
+    state_->tell_waiting();
+    return std::exchange(state_->events, {});
+}
 
 const Document& Session::document() const { return state_->document; }
 bool Session::playing() const { return state_->play_state == PlayState::playing; }

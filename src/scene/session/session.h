@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,8 +65,11 @@ public:
     void forget_client(ClientId client);
     /// Opens the scene that members were asked about, once their time to answer is over; for a timer.
     void follow_question(std::chrono::steady_clock::time_point now);
-    /// Applies other programs' changes of the catalogue, and returns whether there were any; for a timer.
+    /// Applies other programs' changes of the catalogue, and takes in what waited for models that have come; returns
+    /// whether there was anything. For a timer.
     bool follow_catalog();
+    /// Keys of models that entities wait for.
+    [[nodiscard]] std::set<std::string> missing_models() const;
     /// Events since the last call.
     Events take_events();
 

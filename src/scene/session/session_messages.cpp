@@ -138,4 +138,34 @@ void SessionState::tell_notes() {
         if (told_notes.insert(note).second) tell_message("warning", note);
 }
 
+void SessionState::tell_waiting() {
+    std::vector<EntityIndex> waiting = simulation->waiting();
+    if (waiting == told_waiting) return;
+    told_waiting = std::move(waiting);
+    tell({{"event", "waiting"}, {"indices", told_waiting}});
+}
+
+void SessionState::tell_waiting_models() {
+    const std::size_t count = simulation->waiting().size();
+    if (count == 0) return;
+    const std::string who =
+        count == 1 ? "1 thing waits for its model" : std::to_string(count) + " things wait for their models";
+    tell_message("info", who + ", which the database does not have yet. What is imported appears at once.");
+}
+
+bool SessionState::follow_arrivals() {
+    if (simulation->waiting().empty()) return false;
+    const Arrivals arrivals = simulation->take_arrivals();
+    if (arrivals.came.empty() && arrivals.refused.empty()) return false;
+    simulation_is_pristine = false;
+    // While stopped the simulation is made as a document's that has all of this from the start.
+    const bool is_rebuilt = !arrivals.refused.empty() && play_state == PlayState::stopped && rebuild_simulation().ok();
+    if (!is_rebuilt)
+        for (const Error& refused : arrivals.refused)
+            tell_message("warning", "Something whose model has come is left out of this run: " + refused.message());
+    tell_notes();
+    events.all_poses = true;
+    return true;
+}
+
 }  // namespace embody::scene

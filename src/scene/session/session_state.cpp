@@ -42,7 +42,7 @@ SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_o
 // -----------------------------------------------------------------------------------------------------------
 
 Result<void> SessionState::rebuild_simulation() {
-    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms);
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms, MissingModels::wait);
     if (!made.ok()) return made.error();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
@@ -78,10 +78,11 @@ Result<void> SessionState::sync_entity(const EntityChange& change) {
     if (!change.before) return simulation->add(*document.find(change.after->index));
     const EntityIndex index = change.before->index;
     // An action may have removed it.
-    if (!simulation->contains(index)) return {};
+    const bool is_waiting = simulation->is_waiting(index);
+    if (!is_waiting && !simulation->contains(index)) return {};
     if (!change.after) return simulation->remove(index);
     const Entity& entity = *document.find(index);
-    if (play_state == PlayState::stopped) return simulation->update(entity, false);
+    if (is_waiting || play_state == PlayState::stopped) return simulation->update(entity, false);
 
     // In a run the entity keeps its present state, except for the fields of this change.
     if (Result<void> updated = simulation->update(entity, true); !updated.ok()) return updated;
@@ -106,13 +107,14 @@ Result<void> SessionState::sync(const Change& change) {
         return {};
     }
     if (const auto* joint = std::get_if<JointChange>(&change)) {
-        if (joint->before && !simulation->joint(joint->before->index).is_null())
+        if (joint->before && simulation->contains_joint(joint->before->index))
             if (Result<void> removed = simulation->remove_joint(joint->before->index); !removed.ok()) return removed;
         return joint->after ? simulation->add_joint(*joint->after) : Result<void>{};
     }
 
     // A thing that is moved by hand is at rest at its new pose.
     const auto& pose = std::get<PoseChange>(change);
+    if (simulation->is_waiting(pose.index)) return simulation->update(*document.find(pose.index), false);
     if (!simulation->contains(pose.index)) return {};
     if (Result<void> moved = simulation->set_pose(pose.index, pose.after); !moved.ok()) return moved;
     if (play_state == PlayState::stopped) return {};
@@ -246,7 +248,7 @@ Result<std::string> SessionState::redo() {
 }
 
 Result<void> SessionState::open(Document opened, std::string opened_name, bool is_unsaved) {
-    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms);
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms, MissingModels::wait);
     if (!made.ok()) return made.error();
     // Where the old document was saved its journal has gone already; else it becomes a recovery.
     journal.reset();
@@ -266,6 +268,8 @@ Result<void> SessionState::open(Document opened, std::string opened_name, bool i
     const json changes = json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}});
     if (is_unsaved) keep(changes);
     tell_document(changes);
+    told_waiting.clear();
+    tell_waiting_models();
     tell(simulation_event());
     events.all_poses = true;
     return {};

@@ -52,7 +52,8 @@ struct SessionState {
     std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
     std::uint32_t told_limits = 0;                                 ///< of this run
     std::set<std::string> told_problems;
-    std::set<std::string> told_notes;  ///< of this document
+    std::set<std::string> told_notes;       ///< of this document
+    std::vector<EntityIndex> told_waiting;  ///< entities that wait for their models, as clients know
 
     Events events;
 
@@ -92,6 +93,10 @@ struct SessionState {
     void tell_document(nlohmann::json changes);
     /// Tells each client that has said hello what its person can undo and redo now, where that has changed.
     void tell_histories();
+    /// Which entities wait for their models, where that has changed.
+    void tell_waiting();
+    /// Puts what waited for models that are there now into the simulation; returns whether there was any.
+    bool follow_arrivals();
     [[nodiscard]] nlohmann::json simulation_json() const;
     [[nodiscard]] nlohmann::json simulation_event() const;
 
@@ -119,6 +124,7 @@ private:
     void keep(const nlohmann::json& changes);
     void tell_step();
     void tell_notes();
+    void tell_waiting_models();
 };
 
 /// The document that scene.new makes: a floor to put things on.

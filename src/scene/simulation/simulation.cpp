@@ -57,7 +57,7 @@ Simulation::Simulation() = default;
 Simulation::~Simulation() = default;
 
 Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog,
-                                                       std::shared_ptr<FormCache> forms) {
+                                                       std::shared_ptr<FormCache> forms, MissingModels missing) {
     Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
     if (!world.ok())
         return Error{"settings." + document_field(world.error().where), world.error().why, world.error().remedy};
@@ -67,10 +67,13 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     simulation->state_ =
         std::make_unique<State>(std::move(world).value(), document.settings, catalog, std::move(forms));
     State& state = *simulation->state_;
+    state.may_wait = missing == MissingModels::wait && catalog != nullptr;
     if (catalog != nullptr) {
         Result<void> set = state.world->set_surface_pairs(catalog->taxonomy().surfaces().table());
         if (!set.ok()) return set.error();
     }
+
+    if (Result<void> known = state.check_models(document); !known.ok()) return known.error();
 
     // Entities that joints and pins need as one body are made as one from the start.
     state.find_bodies(document);
@@ -80,6 +83,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     for (const bool liquids : {false, true}) {
         for (const Entity& entity : document.entities) {
             state.templates[entity.index] = entity;
+            if (state.waiting.contains(entity.index)) continue;
             if (state.definitions.attributes.is_liquid(entity) != liquids) continue;
             if (Result<void> added = state.add(entity); !added.ok()) return added.error();
         }
@@ -263,17 +267,13 @@ Result<AttributeSet> Simulation::attributes(EntityIndex entity) const {
 }
 
 Result<void> Simulation::add(const Entity& entity) {
-    if (Result<void> added = state_->add(entity); !added.ok()) return added;
-    if (Result<void> held = state_->fasten_all(entity.index); !held.ok()) {
-        state_->remove_all({entity.index});
-        return held;
-    }
+    if (Result<void> added = state_->add_or_wait(entity); !added.ok()) return added;
     state_->templates[entity.index] = entity;
     return {};
 }
 
 Result<void> Simulation::update(const Entity& entity, bool keep_motion) {
-    if (Result<void> updated = state_->update(entity, keep_motion); !updated.ok()) return updated;
+    if (Result<void> updated = state_->update_or_wait(entity, keep_motion); !updated.ok()) return updated;
     state_->templates[entity.index] = entity;
     return {};
 }
@@ -294,7 +294,7 @@ Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool ke
 }
 
 Result<void> Simulation::remove(EntityIndex entity) {
-    if (!contains(entity)) return not_in_world(entity);
+    if (!contains(entity) && !is_waiting(entity)) return not_in_world(entity);
     remove_all({entity});
     return {};
 }
@@ -303,6 +303,7 @@ void Simulation::remove_all(const std::vector<EntityIndex>& entities) {
     std::vector<EntityIndex> there;
     for (const EntityIndex entity : entities) {
         state_->templates.erase(entity);
+        state_->waiting.erase(entity);
         if (state_->live.contains(entity)) there.push_back(entity);
     }
     state_->remove_all(there);
@@ -310,7 +311,24 @@ void Simulation::remove_all(const std::vector<EntityIndex>& entities) {
 
 Result<void> Simulation::add_joint(const SceneJoint& joint) { return state_->add_joint(joint); }
 
-Result<void> Simulation::remove_joint(std::uint32_t joint) { return state_->remove_joint(joint); }
+Result<void> Simulation::remove_joint(std::uint32_t joint) {
+    if (state_->waiting_joints.erase(joint) > 0) return {};
+    return state_->remove_joint(joint);
+}
+
+bool Simulation::contains_joint(std::uint32_t joint) const {
+    return state_->joints.contains(joint) || state_->waiting_joints.contains(joint);
+}
+
+bool Simulation::is_waiting(EntityIndex entity) const { return state_->waiting.contains(entity); }
+
+std::vector<EntityIndex> Simulation::waiting() const {
+    std::vector<EntityIndex> indices;
+    for (const auto& [index, entity] : state_->waiting) indices.push_back(index);
+    return indices;
+}
+
+Arrivals Simulation::take_arrivals() { return state_->take_arrivals(); }
 
 void Simulation::set_actions(const std::vector<Action>& actions) { state_->actions->set_actions(actions); }
 

@@ -33,13 +33,23 @@ struct Activity {
     std::size_t points = 0;  ///< grains, particles and nodes of the entities that are no single body
 };
 
+/// What becomes of entities whose model is not in the catalogue: an error, or they wait outside of the world.
+enum class MissingModels : std::uint8_t { refuse, wait };
+
+/// Entities whose models have come.
+struct Arrivals {
+    std::vector<EntityIndex> came;
+    std::vector<Error> refused;  ///< what could not be put into the world, and why; it waits no more
+};
+
 /// A running document: each entity a body or points, each joint a joint, the actions active.
 class Simulation {
 public:
     /// `catalog` may be null for documents without models. `forms` holds meshes of earlier simulations, and gets those
-    /// of this one. The error names the entity and field.
+    /// of this one. The error names the entity and field, and all models that are missing.
     static Result<std::unique_ptr<Simulation>> create(const Document& document, catalog::Catalog* catalog,
-                                                      std::shared_ptr<FormCache> forms = nullptr);
+                                                      std::shared_ptr<FormCache> forms = nullptr,
+                                                      MissingModels missing = MissingModels::refuse);
     ~Simulation();
 
     /// One time step: actions that are due, physics, then actions that its events trigger.
@@ -95,6 +105,13 @@ public:
     [[nodiscard]] const Entity* definition(EntityIndex entity) const;
     /// Null for a joint that is not in the world.
     [[nodiscard]] physics::JointHandle joint(std::uint32_t joint) const;
+    /// Whether a joint is in the world, or waits with an entity at its end.
+    [[nodiscard]] bool contains_joint(std::uint32_t joint) const;
+    /// Entities that wait for their models, ascending; contains() is false for them.
+    [[nodiscard]] std::vector<EntityIndex> waiting() const;
+    [[nodiscard]] bool is_waiting(EntityIndex entity) const;
+    /// Puts waiting entities whose models are there now into the world, with their joints and pins.
+    Arrivals take_arrivals();
     /// The attributes in effect: the model's, the entity's manual ones, values that actions set.
     [[nodiscard]] Result<attributes::AttributeSet> attributes(EntityIndex entity) const;
 

@@ -120,6 +120,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
             for (const std::uint32_t node : nodes) clamp(node, {});
             continue;
         }
+        if (waiting.contains(*pin.to)) continue;  // fastened when it arrives
         const LiveEntity* other = find(*pin.to);
         const std::string where = "pins[" + std::to_string(i) + "].to";
         if (!other) return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
@@ -217,6 +218,10 @@ Result<void> Simulation::State::add_joint(const SceneJoint& joint) {
     std::string who = "joint " + std::to_string(joint.index);
     if (!joint.name.empty()) who += " (" + joint.name + ")";
     if (joints.contains(joint.index)) return Error{who, "is in the world already"};
+    if (is_waiting_end(joint)) {
+        waiting_joints.insert_or_assign(joint.index, joint);
+        return {};
+    }
     if (Result<void> made = make_bodies_of(joint); !made.ok()) return made;
     physics::JointDefinition definition = joint.definition;
     const Result<BodyHandle> b = end_of(joint.entity_b, who + ": entity_b");

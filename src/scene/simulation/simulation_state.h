@@ -65,8 +65,11 @@ struct Simulation::State {
     std::map<EntityIndex, LiveEntity> live;
     std::vector<EntityIndex> indices;
     std::map<std::uint32_t, LiveJoint> joints;
-    HoldIndex holds;                   ///< of pins and joints of all live entities
-    std::set<EntityIndex> remarkable;  ///< entities with a note, and liquids
+    bool may_wait = false;                               ///< for models that are not in the catalogue
+    std::map<EntityIndex, Entity> waiting;               ///< for their models
+    std::map<std::uint32_t, SceneJoint> waiting_joints;  ///< of waiting entities
+    HoldIndex holds;                                     ///< of pins and joints of all live entities
+    std::set<EntityIndex> remarkable;                    ///< entities with a note, and liquids
     std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these exist
     std::vector<TimedForce> timed_forces;
     std::vector<EntityIndex> spawned, despawned;
@@ -87,6 +90,21 @@ struct Simulation::State {
     [[nodiscard]] Transform pose_of(const LiveEntity& entity) const;
     /// Piles of small grains need shorter substeps than the document's.
     Result<void> apply_settings();
+
+    // Entities whose models are missing -------------------------------------------------------------------------------
+
+    /// Whether the entity's model is not in the catalogue, and it may wait for it.
+    [[nodiscard]] bool must_wait(const Entity& entity);
+    /// Names the models that the document needs and the catalogue has not.
+    Result<void> check_models(const Document& document);
+    /// Adds the entity with its pins and those to it, or none of that.
+    Result<void> add_whole(const Entity& entity);
+    /// Adds the entity or lets it wait.
+    Result<void> add_or_wait(const Entity& entity);
+    /// The entity has changed: it is in the world or waits, and does either afterwards.
+    Result<void> update_or_wait(const Entity& entity, bool keep_motion);
+    [[nodiscard]] bool is_waiting_end(const SceneJoint& joint) const;
+    Arrivals take_arrivals();
 
     // Connections between entities ------------------------------------------------------------------------------------
 
@@ -112,6 +130,11 @@ struct Simulation::State {
     [[nodiscard]] const Entity* definition(EntityIndex index) const;
 
 private:
+    Result<void> arrive(const Entity& before, const Entity& entity);
+    void leave(const Entity& entity);
+    /// Adds the joints whose ends wait no more; the errors of those that the world refuses.
+    std::vector<Error> add_joints_that_waited();
+
     Result<LiveEntity> describe(const Entity& entity);
     Result<physics::BodyDefinition> prepare_body(LiveEntity& entity);
     Result<void> put(LiveEntity& entity);

@@ -27,6 +27,15 @@ Result<std::string> usual_name(SessionState& state, const Entity& entity) {
     return model.value().name;
 }
 
+// A model that a person asks for must be there; only what is in the document already may wait for its model.
+Result<void> check_model(SessionState& state, const Entity& entity) {
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    if (!model) return {};
+    const Result<const KnownModel*> found = state.definitions.models.find(model->key);
+    if (found.ok()) return {};
+    return Error{"entity." + found.error().where, found.error().why, found.error().remedy};
+}
+
 Result<void> check_room(const Document& document, std::size_t count) {
     if (document.next_index > last_document_index - count + 1)
         return Error{
@@ -69,6 +78,7 @@ Result<json> add(SessionState& state, const json& params) {
     Entity entity = std::move(read).value();
     if (entity.index != 0) return Error{"entity.index", "is given by the session", "leave it out"};
     if (Result<void> room = check_room(state.document, 1); !room.ok()) return room.error();
+    if (Result<void> known = check_model(state, entity); !known.ok()) return known.error();
     entity.index = state.document.next_index;
     if (entity.name.empty()) {
         Result<std::string> name = usual_name(state, entity);
@@ -170,6 +180,8 @@ Result<json> update(SessionState& state, const json& params) {
     Entity changed = *found.value();
     if (Result<void> read = change_entity_from_json(changed, *fields, "entity", false); !read.ok()) return read.error();
     const bool same_geometry = !fields->contains("model") && !fields->contains("shape");
+    if (Result<void> known = same_geometry ? Result<void>{} : check_model(state, changed); !known.ok())
+        return known.error();
     edit.label = "Change " + state.called({index});
     if (same_geometry) {
         edit.changes.emplace_back(change_of(*found.value(), changed));

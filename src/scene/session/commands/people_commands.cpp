@@ -61,7 +61,8 @@ Result<json> hello(SessionState& state, const json& params) {
     for (const EntityIndex index : state.simulation->entities())
         if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
     for (const Entity& entity : state.document.entities)
-        if (!state.simulation->contains(entity.index)) despawned.push_back(entity.index);
+        if (!state.simulation->contains(entity.index) && !state.simulation->is_waiting(entity.index))
+            despawned.push_back(entity.index);
     const auto value = [](const std::optional<std::string>& text) { return text ? json(*text) : json(nullptr); };
     return json{{"version", version_text},
                 {"scene", document_to_json(state.document)},
@@ -76,7 +77,8 @@ Result<json> hello(SessionState& state, const json& params) {
                 {"members", state.people.members()},
                 {"recovered", recoveries_to_json(state.options)},
                 {"spawned", std::move(spawned)},
-                {"despawned", std::move(despawned)}};
+                {"despawned", std::move(despawned)},
+                {"waiting", state.simulation->waiting()}};
 }
 
 Result<json> set_name(SessionState& state, const json& params) {
