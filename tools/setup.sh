@@ -119,7 +119,18 @@ build_studio() {
     fi
 }
 
-# Prints the catalogues of real models on this machine, one path per line. The furniture of Sweet Home 3D's own program
+# serve_studio PROGRAM DATA serve ARGUMENTS…: becomes the server. Until the catalogues of real models are in the user's own database it
+# gets a list of them, which is still written while the Studio is used: what must be downloaded comes when it is there.
+serve_studio() {
+    local program=$1 data=$2
+    shift 2
+    case " $* " in *" --database"* | *" --help "* | *" -h "*) exec "$program" "$@" ;; esac
+    [ ! -f "$data/catalogues-imported" ] || exec "$program" "$@"
+    say "First start: the library is filled with real models while you use the Studio; this takes some minutes, once."
+    exec "$program" "$@" --fill-list <(model_catalogues "$data/catalogues") --fill-mark "$data/catalogues-imported"
+}
+
+# Prints the catalogues of real models on this machine, one path per line, and after "# " what could not be had. The furniture of Sweet Home 3D's own program
 # is in a package that would install Java, too, so only its archive is fetched and unpacked.
 model_catalogues() {
     local folder="$1" piece
@@ -135,7 +146,7 @@ model_catalogues() {
         if (cd "$work" && apt-get download sweethome3d && dpkg-deb -x sweethome3d_*.deb "$folder") >"$root/build/sweethome3d.log" 2>&1; then
             rm -rf "$work"
         else
-            say "Note: the 100 models of the package sweethome3d could not be fetched (log: build/sweethome3d.log); going on without them."
+            printf '%s\n' "# The 100 models of Sweet Home 3D itself could not be downloaded (log: build/sweethome3d.log); the next start tries again."
             return
         fi
     fi

@@ -554,6 +554,7 @@ Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& p
     ConfinedPoolOptions pool;
     pool.workers = options.workers;
     pool.worker_program = options.worker_program;
+    pool.in_background = options.in_background;
     // Repeats the last progress, so that a person can stop within a model, too.
     ImportOptions watched = options;
     ImportProgress last;

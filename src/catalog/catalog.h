@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -65,6 +66,7 @@ struct ImportReport {
     std::size_t added = 0, updated = 0, unchanged = 0;
     std::vector<std::string> keys;  ///< of the models added, updated or found unchanged; the first 1000
     std::vector<ImportFailure> failures;
+    std::size_t shapeless = 0;  ///< light sources of catalogues that are nothing but light: left out, no failures
     double seconds = 0;
     bool stopped = false;  ///< the progress callback asked to stop; the next import goes on from there
 };
@@ -72,6 +74,8 @@ struct ImportOptions {
     int workers = 0;                                           ///< 0: one a core
     bool again = false;                                        ///< prepare also what is in the database unchanged
     std::filesystem::path worker_program = {};                 ///< empty: beside the running program
+    std::set<std::string> wanted = {};                         ///< keys of models that are prepared before all others
+    bool in_background = false;                                ///< what else runs on this machine goes first
     std::optional<Collection> collection = {};                 ///< facts about the files; see catalog/collection.h
     std::function<bool(const ImportProgress&)> progress = {};  ///< returns false to stop; may be empty
 };

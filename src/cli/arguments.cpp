@@ -110,6 +110,11 @@ private:
                           "Port; 0: any free one (default 8420, or a free one where it is taken)");
         c.app->add_option("--scene", c.into->scene,
                           "Scene to open: a file, or the name of a saved or demo scene (default furnished_room)");
+        c.app->add_option("--fill", c.into->fill,
+                          "Files, folders and catalogues to import in the background, while the Studio is used");
+        c.app->add_option("--fill-list", c.into->fill_list,
+                          "A file or pipe that names more of them, one a line; \"# text\" says what could not be had");
+        c.app->add_option("--fill-mark", c.into->fill_mark, "File to write when all of these are in the database");
         c.app->add_flag("--open", c.into->open_browser, "Open the Studio in the desktop's browser");
     }
     void add_import() {

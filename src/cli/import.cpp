@@ -22,8 +22,9 @@ nlohmann::json to_json(const catalog::ImportReport& report) {
     nlohmann::json failures = nlohmann::json::array();
     for (const catalog::ImportFailure& failure : report.failures)
         failures.push_back({{"path", failure.path}, {"why", failure.error.message()}});
-    return {{"added", report.added},           {"updated", report.updated}, {"unchanged", report.unchanged},
-            {"failures", std::move(failures)}, {"seconds", report.seconds}, {"stopped", report.stopped}};
+    return {{"added", report.added},           {"updated", report.updated},     {"unchanged", report.unchanged},
+            {"failures", std::move(failures)}, {"shapeless", report.shapeless}, {"seconds", report.seconds},
+            {"stopped", report.stopped}};
 }
 
 }  // namespace
@@ -59,6 +60,8 @@ int run_import(const ImportArguments& arguments) {
                    result->updated, result->unchanged, result->failures.size(), result->seconds,
                    (*catalog)->model_count(), arguments.database.string());
     }
+    if (result->shapeless > 0 && !arguments.json)
+        print_text("{} light sources have no shape and were left out\n", result->shapeless);
     if (result->stopped) {
         print_error("embody: stopped; the same command goes on from here\n");
         return exit_failed;

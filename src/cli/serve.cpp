@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "cli/commands.h"
+#include "cli/fill_line.h"
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "server/server.h"
@@ -39,12 +40,17 @@ int run_serve(const ServeArguments& arguments) {
     options.scene.taxonomy_folder = data_folder() / "taxonomy";
     options.scene.session.saved_scenes = saved_scenes_folder();
     options.scene.session.demo_scenes = data_folder() / "scenes";
+    FillLine fill_line;
+    options.fill.catalogues = arguments.fill;
+    options.fill.list = arguments.fill_list;
+    options.fill.mark = arguments.fill_mark;
+    options.fill.tell = [&fill_line](const server::FillProgress& progress) { fill_line.show(progress); };
     options.scene.open_scene = arguments.scene.value_or("furnished_room");
     // The server opens it again; this call shows the progress where the taxonomy has changed.
     if (auto catalog = open_catalog(arguments.database); !catalog) return report(catalog.error());
     auto server = server::Server::start(options);
     if (!server && !arguments.scene) {
-        // The default scene needs models; without them an empty scene is better than no Studio.
+        // An empty scene is better than no Studio.
         const Error no_scene = server.error();
         options.scene.open_scene.clear();
         server = server::Server::start(options);

@@ -80,11 +80,16 @@ Result<void> can_read(const std::filesystem::path& file) {
 
 namespace {
 constexpr std::string_view out_of_memory_reason = "needs more memory than an import may use";
+constexpr std::string_view without_triangles_reason = "holds no triangles";
 }  // namespace
 
 Error out_of_memory(std::string where) { return {std::move(where), std::string(out_of_memory_reason), "simplify it"}; }
 
 bool is_out_of_memory(const Error& error) { return error.why == out_of_memory_reason; }
+
+Error without_triangles(std::string where) { return {std::move(where), std::string(without_triangles_reason), ""}; }
+
+bool is_without_triangles(const Error& error) { return error.why == without_triangles_reason; }
 
 Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);

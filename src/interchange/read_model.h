@@ -22,6 +22,9 @@ Result<void> can_read(const std::filesystem::path& file);
 /// Why a file could not be read where memory ran out: another try with more may succeed.
 Error out_of_memory(std::string where);
 bool is_out_of_memory(const Error& error);
+/// The error of a file that is read and holds nothing to draw.
+Error without_triangles(std::string where);
+bool is_without_triangles(const Error& error);
 
 /// Reads a model file and what it refers to in its own folder and below. Every position is finite, every index in
 /// range, every mesh has triangles and every image is PNG or JPEG; else an error with file and reason. What can be left

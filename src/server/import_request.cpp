@@ -39,7 +39,9 @@ Result<std::string> ImportRequests::file_name(const HttpRequest& request) {
 }
 
 void ImportRequests::start(std::shared_ptr<Upload> upload, std::function<void(HttpResponse)> respond) {
+    ++uploads_;
     queue_.post([this, upload = std::move(upload), respond = std::move(respond)]() mutable {
+        --uploads_;
         // An exception of a library (memory, files) fails this import and nothing else.
         HttpResponse response;
         try {
@@ -50,6 +52,12 @@ void ImportRequests::start(std::shared_ptr<Upload> upload, std::function<void(Ht
         // The upload is removed before the client hears that the import is done, so that its next upload finds room.
         upload.reset();
         respond(std::move(response));
+    });
+}
+
+void ImportRequests::run_between_uploads(std::function<bool()> work) {
+    queue_.post([this, work = std::move(work)]() mutable {
+        if (work()) run_between_uploads(std::move(work));
     });
 }
 

@@ -15,7 +15,8 @@
 
 namespace embody::server {
 
-/// Imports of uploaded files (POST /import?name=…), one after the other on one thread.
+/// Imports of uploaded files (POST /import?name=…), one after the other on one thread, and on the same thread what is
+/// done while no upload waits.
 class ImportRequests {
 public:
     ImportRequests(std::filesystem::path database, std::filesystem::path taxonomy_folder);
@@ -26,6 +27,13 @@ public:
     /// `respond` is called once, on the import thread, unless the server stops before.
     void start(std::shared_ptr<Upload> upload, std::function<void(HttpResponse)> respond);
 
+    /// Runs `work` while no upload waits, and again as long as it returns true. It asks must_give_way() often, and then
+    /// returns soon.
+    void run_between_uploads(std::function<bool()> work);
+    /// Whether an upload waits, or the server ends.
+    [[nodiscard]] bool must_give_way() const { return stop_ || uploads_ > 0; }
+    [[nodiscard]] bool stops() const { return stop_; }
+
     /// The current import ends after the model that is being read; imports that wait are not started.
     void request_stop();
     bool wait_ended(std::chrono::steady_clock::time_point until) { return queue_.wait_ended(until); }
@@ -35,7 +43,8 @@ private:
 
     std::filesystem::path database_, taxonomy_folder_;
     std::atomic<bool> stop_ = false;
-    WorkQueue queue_{1};  ///< last: its threads end before the members they use are destroyed
+    std::atomic<int> uploads_ = 0;  ///< that wait for their import
+    WorkQueue queue_{1};            ///< last: its threads end before the members they use are destroyed
 };
 
 }  // namespace embody::server

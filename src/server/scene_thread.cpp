@@ -55,13 +55,14 @@ struct SceneThread::State {
     std::unique_ptr<catalog::Catalog> catalog;
     std::unique_ptr<scene::Session> session;
 
-    mutable std::mutex mutex;  ///< guards messages, stop, ended, title
+    mutable std::mutex mutex;  ///< guards messages, stop, ended, title, missing_models
     std::condition_variable changed;
     std::deque<Message> messages;
     bool stop = false, ended = false;
     StateBoard board;
     DebugBoard debug;
     std::string title;
+    std::set<std::string> missing_models;
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
@@ -84,6 +85,7 @@ struct SceneThread::State {
     [[nodiscard]] bool stop_is_requested() const;
     void follow_others();
     void tell_events();
+    void note_missing_models();
     void publish(bool all_changed);
     void publish_if_due();
     void publish_debug();
@@ -148,6 +150,11 @@ std::shared_ptr<const std::string> SceneThread::take_debug_frame(ClientId client
 std::string SceneThread::scene_title() const {
     const std::lock_guard lock(state_->mutex);
     return state_->title;
+}
+
+std::set<std::string> SceneThread::missing_models() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->missing_models;
 }
 
 void SceneThread::request_document(std::function<void(scene::Document)> take) {
@@ -358,14 +365,23 @@ json SceneThread::State::execute(const json& request) {
     }
     auto result = session->execute(command.get<std::string>(), params, served);
     if (!result) return failed(id, result.error());
+    if (command == "hello" && options.greeting) result->update(options.greeting());
     return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
+}
+
+void SceneThread::State::note_missing_models() {
+    std::set<std::string> missing = session->missing_models();
+    const std::lock_guard lock(mutex);
+    missing_models = std::move(missing);
 }
 
 void SceneThread::State::tell_events() {
     scene::Events events = session->take_events();
     bool document_changed = false;
     for (const json& event : events.messages) {
-        document_changed = document_changed || event.value("event", "") == "document";
+        const std::string name = event.value("event", "");
+        document_changed = document_changed || name == "document";
+        if (name == "waiting") note_missing_models();
         listener.broadcast(dump(event));
     }
     for (const auto& [client, event] : events.directed) listener.send(client, dump(event));

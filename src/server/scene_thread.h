@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 
 #include "foundation/result.h"
@@ -20,6 +22,8 @@ struct SceneThreadOptions {
     std::filesystem::path database;  ///< the thread opens a Catalog of its own
     std::filesystem::path taxonomy_folder;
     scene::SessionOptions session;
+    /// What the transport adds to the answer to `hello`; called on the scene thread. May be empty.
+    std::function<nlohmann::json()> greeting = {};
     std::string open_scene;  ///< name of a saved or demo scene, or a path; empty: an empty scene
 };
 
@@ -50,6 +54,9 @@ public:
 
     /// The client's newest debug frame, each once; null: nothing new.
     std::shared_ptr<const std::string> take_debug_frame(ClientId client);
+
+    /// Keys of models that the open scene waits for.
+    [[nodiscard]] std::set<std::string> missing_models() const;
 
     /// The open document's title.
     [[nodiscard]] std::string scene_title() const;

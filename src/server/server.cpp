@@ -16,6 +16,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <string_view>
@@ -26,6 +27,7 @@
 #include "server/access.h"
 #include "server/connection_book.h"
 #include "server/import_request.h"
+#include "server/library_fill.h"
 #include "server/routes.h"
 #include "server/upload_store.h"
 #include "server/work_queue.h"
@@ -85,6 +87,7 @@ struct Shared {
     std::unique_ptr<Routes> routes;
     std::unique_ptr<WorkQueue> route_queue, upload_queue;
     std::unique_ptr<ImportRequests> imports;
+    std::unique_ptr<LibraryFill> fill;
 };
 
 std::string random_token() {
@@ -582,6 +585,9 @@ Server::~Server() {
     state_->request_end();
     // The scene first: it posts to the io_context until it has ended; then the queues that answer from its document.
     state_->shared.scene.reset();
+    // The fill works on the thread of the imports, and asks them whether to end.
+    if (state_->shared.imports) (void)state_->shared.imports->wait_ended(Clock::time_point::max());
+    state_->shared.fill.reset();
     state_->shared.imports.reset();
     state_->shared.route_queue.reset();
     state_->shared.upload_queue.reset();
@@ -595,10 +601,18 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     State& state = *server->state_;
     if (auto opened = state.open_routes(options); !opened) return opened.error();
     if (auto listening = state.listen(options); !listening) return listening.error();
-    auto scene = SceneThread::start(options.scene, state.listener());
+    Shared& shared = state.shared;
+    shared.imports = std::make_unique<ImportRequests>(options.scene.database, options.scene.taxonomy_folder);
+    const SceneThreadListener listener = state.listener();
+    FillOptions fill = options.fill;
+    fill.wanted = [&shared] { return shared.scene->missing_models(); };
+    shared.fill = std::make_unique<LibraryFill>(std::move(fill), options.scene.database, options.scene.taxonomy_folder,
+                                                *shared.imports, listener.broadcast);
+    SceneThreadOptions scene_options = options.scene;
+    scene_options.greeting = [&shared] { return nlohmann::json{{"import", shared.fill->state()}}; };
+    auto scene = SceneThread::start(scene_options, listener);
     if (!scene) return scene.error();
-    state.shared.scene = std::move(*scene);
-    state.shared.imports = std::make_unique<ImportRequests>(options.scene.database, options.scene.taxonomy_folder);
+    shared.scene = std::move(*scene);
     state.accept();
     return server;
 }
@@ -747,6 +761,7 @@ std::string Server::url() const {
 }
 
 void Server::run() {
+    state_->shared.fill->start();
     state_->signals.emplace(state_->shared.io, SIGINT, SIGTERM);
     state_->signals->async_wait([this](error_code error, int) {
         if (!error) state_->stop();

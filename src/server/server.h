@@ -7,6 +7,7 @@
 #include <string>
 
 #include "foundation/result.h"
+#include "server/library_fill.h"
 #include "server/scene_thread.h"
 
 namespace embody::server {
@@ -17,6 +18,7 @@ struct ServerOptions {
     bool any_port_if_taken = true;        ///< take a free port where `port` is in use
     std::filesystem::path studio_folder;  ///< the built front-end
     SceneThreadOptions scene;
+    FillOptions fill;  ///< what is imported in the background
 };
 
 /// Serves the Studio, the models and one open scene to browsers and scripts (docs/protocol.md).

@@ -11,6 +11,7 @@ import { openHelp } from "./panels/help";
 import { openHistory } from "./panels/history";
 import { HeadsetButtons } from "./panels/headset_buttons";
 import { Hierarchy } from "./panels/hierarchy";
+import { LibraryProgress } from "./panels/library_progress";
 import { ModelBrowser } from "./panels/model_browser";
 import { ModelFields } from "./panels/model_fields";
 import { openOptions } from "./panels/options_menu";
@@ -53,7 +54,7 @@ function start(): void {
   const gizmo = new Gizmo(studio);
   const pointer = new Pointer(studio, gizmo);
   const browser = new ModelBrowser(studio, new DragIn(studio));
-  const left = leftPanel(browser, new Hierarchy(studio));
+  const left = leftPanel(browser, new Hierarchy(studio), new LibraryProgress(studio));
 
   const actions: UserAction[] = makeActions(studio, gizmo, {
     scenes: () => void openScenes(studio),
@@ -110,8 +111,8 @@ function start(): void {
   studio.connection.open();
 }
 
-/** Two tabs: the models of the database, and the entities of the scene. */
-function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): { root: HTMLElement; showModels(): void } {
+/** Two tabs: the models of the database, and the entities of the scene; above both how far the library is filled. */
+function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy, progress: LibraryProgress): { root: HTMLElement; showModels(): void } {
   const pages = [
     { name: "Models", root: browser.root },
     { name: "In the scene", root: hierarchy.root },
@@ -128,6 +129,7 @@ function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): { root: HTMLEle
     "aside",
     { class: "panel left", "aria-label": "Models and entities" },
     element("div", { class: "tabs", role: "tablist" }, ...tabs),
+    progress.root,
     ...pages.map((page) => page.root),
   );
   return { root, showModels: () => choose(browser.root) };

@@ -202,6 +202,7 @@ export class Studio implements Parts {
     this.document.reset(hello);
     // After a lost connection the user goes on where they were.
     if (!isSame) this.framing.open();
+    if (hello.waiting?.length) this.notices.tell({ level: "info", text: waitingText(hello.waiting.length), remedy: "They appear when these are imported." });
     this.retint();
     this.meetPeople(hello);
     this.server.changed.emit();
@@ -246,6 +247,12 @@ export class Studio implements Parts {
         break;
       case "despawned":
         this.document.despawn(event.index);
+        break;
+      case "waiting":
+        this.document.wait(event.indices);
+        break;
+      case "import":
+        this.server.takeFill(event);
         break;
       case "statistics":
         this.playback.measure(event);
@@ -338,6 +345,10 @@ export class Studio implements Parts {
     this.entities.update(performance.now(), true);
     this.view.invalidate();
   }
+}
+
+function waitingText(count: number): string {
+  return `${count === 1 ? "1 thing waits for its model" : `${count.toLocaleString("en")} things wait for their models`}, which the database does not have yet.`;
 }
 
 /** The label of an undo step in the past tense. */

@@ -48,6 +48,22 @@ TEST_F(ImportTest, FailsWhereNoWorkerCanBeStarted) {
     EXPECT_EQ(report.error().why, "is missing");
 }
 
+TEST_F(ImportTest, WantedModelsComeFirst) {
+    for (const char letter : std::string("abcdef"))
+        write_model(std::string(1, letter) + ".obj", std::string(3, letter));
+    std::vector<std::string> names;
+    const PrepareModels prepare = [&](const std::vector<ImportItem>& items, const auto& done) {
+        for (const ImportItem& item : items) names.push_back(item.name);
+        return prepare_boxes(items, done);
+    };
+    const auto all = import({models()}, {}, prepare);
+    ASSERT_TRUE(all);
+    EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "c", "d", "e", "f"}));
+    names.clear();
+    ASSERT_TRUE(import({models()}, {.again = true, .wanted = {all->keys.at(4), all->keys.at(2)}}, prepare));
+    EXPECT_EQ(names, (std::vector<std::string>{"c", "e", "a", "b", "d", "f"}));
+}
+
 TEST_F(ImportTest, AFullDiskIsReportedAndWhatWasStoredStays) {
     for (int i = 0; i < 200; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(200 + i, 'x'));
     auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);

@@ -65,6 +65,7 @@ TEST(SweethomeCatalogue, ReadsAllOfAPiece) {
         "id#1=own#chair\nname#1=Chair\ntags#1=Seat, Wood ,\ncategory#1=Kitchen\ncreator#1=Me\nicon#1=/c/chair.png\n"
         "model#1=/c/"
         "chair.obj\nwidth#1=40\ndepth#1=50\nheight#1=90.5\nmovable#1=false\ndoorOrWindow#1=true\nelevation#1=10\n"
+        "lightSourceX#1=5\n"
         "modelRotation#1=0 0 1 0 1 0 -1 0 0\n";
     const auto read = read_sweethome_catalogue(
         scratch.write_zip("own.sh3f", {{"PluginFurnitureCatalog.properties", list}, {"c/chair.obj", "x"}}));
@@ -86,6 +87,7 @@ TEST(SweethomeCatalogue, ReadsAllOfAPiece) {
     EXPECT_EQ(piece.rotation, (std::array<double, 9>{0, 0, 1, 0, 1, 0, -1, 0, 0}));
     EXPECT_FALSE(piece.movable);
     EXPECT_TRUE(piece.door_or_window);
+    EXPECT_TRUE(piece.light_source);
 }
 
 /// Pieces of all catalogues in a folder, -1 where there are none.

@@ -46,11 +46,11 @@ export class RealServer {
     for (const suffix of ["", "-wal"]) if (existsSync(database + suffix)) copyFileSync(database + suffix, this.database + suffix);
   }
 
-  /** Starts the server with a scene (the document itself); resolves with its address. A second start uses the same port. */
-  async start(scene) {
+  /** Starts the server with a scene (the document itself) and more words; resolves with its address. A second start uses the same port. */
+  async start(scene, more = []) {
     const file = join(this.home, "first.json");
     writeFileSync(file, JSON.stringify(scene));
-    const words = ["serve", "--database", this.database, "--port", String(this.port ?? 0), "--scene", file];
+    const words = ["serve", "--database", this.database, "--port", String(this.port ?? 0), "--scene", file, ...more];
     this.process = spawn(this.program, words, { env: { ...process.env, XDG_DATA_HOME: this.home } });
     let output = "";
     const address = await new Promise((resolve, reject) => {

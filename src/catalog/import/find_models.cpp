@@ -140,6 +140,7 @@ struct Walk {
             item.stated_rotation = piece.rotation;
             item.movable = piece.movable;
             item.door_or_window = piece.door_or_window;
+            item.light_source = piece.light_source;
             found.models.push_back(std::move(model));
         }
     }

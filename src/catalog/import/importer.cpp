@@ -16,6 +16,7 @@
 #include "foundation/state_hash.h"
 #include "interchange/archive/archive.h"
 #include "interchange/compact/compact_geometry.h"
+#include "interchange/read_model.h"
 
 namespace embody::catalog {
 namespace {
@@ -135,6 +136,8 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     report_.failures = std::move(found.failures);
     progress_.total = found.models.size();
     if (auto planned = plan(std::move(found.models), options); !planned) return planned.error();
+    std::stable_partition(planned_.begin(), planned_.end(),
+                          [&](const Planned& planned) { return options.wanted.contains(planned.item.key); });
     progress_.done = progress_.total - planned_.size();
     progress_.unchanged = report_.unchanged;
     progress_.failed = report_.failures.size();
@@ -369,6 +372,10 @@ void Importer::name_in_report(const std::string& key) {
 
 Result<void> Importer::take(const Planned& planned, Result<PreparedModel> prepared) {
     if (!prepared) {
+        if (planned.item.light_source && interchange::is_without_triangles(prepared.error())) {
+            ++report_.shapeless;
+            return {};
+        }
         report_.failures.push_back({planned.source.location, prepared.error()});
         return {};
     }

@@ -139,6 +139,7 @@ private:
         }
         place = Place{};
         place.worker = std::make_unique<WorkerProcess>(std::move(*worker));
+        if (options_.in_background) place.worker->lower_priority();
         place.deadline = Clock::now() + start_time;
     }
 

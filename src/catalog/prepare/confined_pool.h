@@ -15,6 +15,7 @@ struct ConfinedPoolOptions {
     double wall_seconds_per_model = 900;      ///< the same, for workers that wait instead of working
     std::size_t bytes = 0;                    ///< address space of all workers together; 0: half of the memory
     std::filesystem::path worker_program;     ///< empty: embody-import-worker beside the running program
+    bool in_background = false;               ///< workers leave the processor to others that want it
     std::function<bool()> go_on = {};         ///< called about once a second; false stops; may be empty
 };
 

@@ -28,6 +28,7 @@ struct ImportItem {
                                           0, 0, 0, 1};  ///< rows; the catalogue's correction of the file's axes
     std::optional<bool> movable;
     bool door_or_window = false;
+    bool light_source = false;  ///< what shines may have no shape; not sent to the worker
 };
 
 /// A model ready for the database: everything that needs the file, computed by a confined worker.

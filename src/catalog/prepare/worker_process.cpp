@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -119,6 +120,11 @@ WorkerProcess::~WorkerProcess() {
     finish();
     if (to_worker_ >= 0) close(to_worker_);
     if (from_worker_ >= 0) close(from_worker_);
+}
+
+void WorkerProcess::lower_priority() const {
+    constexpr int niceness = 10;  // a tenth of what a process of the usual niceness gets
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(process_), niceness);
 }
 
 double WorkerProcess::processor_seconds() const {

@@ -32,6 +32,8 @@ public:
     [[nodiscard]] int input() const { return to_worker_; }
     /// Time that its threads ran on processors so far, s.
     [[nodiscard]] double processor_seconds() const;
+    /// From now on other programs have the processor first.
+    void lower_priority() const;
     [[nodiscard]] bool has_unsent() const { return sent_ < outgoing_.size(); }
 
     /// Queues a frame for the worker; send_some() sends it.

@@ -158,7 +158,7 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     add_materials(*read, source, path, material_reading_of(extension_of(path)), scene);
     if (const auto added = add_meshes(*read, scene); !added)
         return Error{where + ": " + added.error().where, added.error().why};
-    if (scene.meshes.empty()) return Error{where, "holds no triangles"};
+    if (scene.meshes.empty()) return without_triangles(where);
     return scene;
 }
 

@@ -92,6 +92,7 @@ Result<SweethomePiece> piece_of(const Properties& properties, const std::string&
     piece.creator = text_of(properties, "creator#" + n);
     piece.movable = text_of(properties, "movable#" + n) != "false";
     piece.door_or_window = text_of(properties, "doorOrWindow#" + n) == "true";
+    piece.light_source = !text_of(properties, "lightSourceX#" + n).empty();
     return piece;
 }
 

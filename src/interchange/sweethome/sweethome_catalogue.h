@@ -26,6 +26,7 @@ struct SweethomePiece {
                                    0, 0, 0, 1};  ///< rows; turns the file's axes before the size is measured
     bool movable = true;
     bool door_or_window = false;
+    bool light_source = false;
 };
 
 /// A catalogue: a .sh3f library or the program's own jar.

@@ -203,6 +203,28 @@ export interface Hello {
   /** Entities that actions added to the running world, and those of the document that actions removed. */
   spawned: Entity[];
   despawned: number[];
+  /** Entities that wait for their models. */
+  waiting?: number[];
+  /** How far the filling of the library is; null: nothing is, or was, to be filled. */
+  import?: LibraryFill | null;
+}
+
+/** Models that the server imports by itself. */
+export interface LibraryFill {
+  state: "running" | "done" | "stopped";
+  done: number;
+  /** 0: files are still looked for. */
+  total: number;
+  /** Null: not known yet. */
+  seconds_left: number | null;
+  /** The model just finished. */
+  file: string;
+  added: number;
+  /** Light sources that have no shape. */
+  skipped: number;
+  failures: { path: string; why: string }[];
+  /** What could not be had, in sentences. */
+  notes: string[];
 }
 
 /** The mesh that carries a deformable entity's drawn form, at rest, in the entity's frame, with its scale applied. */
@@ -334,6 +356,8 @@ export type ServerEvent =
   | ({ event: "simulation" } & Simulation)
   | { event: "spawned"; entity: Entity }
   | { event: "despawned"; index: number }
+  | { event: "waiting"; indices: number[] }
+  | ({ event: "import" } & LibraryFill)
   | ({ event: "statistics" } & Statistics)
   | CatalogEvent
   | ({ event: "progress" } & Progress)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Signal } from "../signal";
 import type { Connection } from "./connection";
-import type { CatalogEvent, Commands, Hello, Progress } from "./messages";
+import type { CatalogEvent, Commands, Hello, LibraryFill, Progress } from "./messages";
 import type { Notices } from "./notices";
 
 /** The server as panels and tools see it: its commands, its version, and events that are not about the scene. */
@@ -12,6 +12,10 @@ export class Server {
   readonly catalogChanged = new Signal<CatalogEvent>();
   /** Progress of the command that is being executed, this page's or another's; all other commands wait for it. */
   readonly progress = new Signal<Progress>();
+  /** The server imports models by itself: how far it is. */
+  readonly filling = new Signal<LibraryFill>();
+  /** The last of these; null before the first. */
+  fill: LibraryFill | null = null;
   version = "";
   /** This page's number on the server. */
   client = 0;
@@ -51,10 +55,17 @@ export class Server {
     }
   }
 
-  /** Takes the answer to hello: the server's version and this page's number. */
-  meet({ version, client }: Hello): void {
+  takeFill(fill: LibraryFill): void {
+    this.fill = fill;
+    this.filling.emit(fill);
+  }
+
+  /** Takes the answer to hello: the server's version, this page's number, and what the server is importing. */
+  meet({ version, client, import: fill }: Hello): void {
     this.version = version;
     this.client = client;
     this.ready = true;
+    this.fill = fill ?? null;
+    if (fill) this.filling.emit(fill);
   }
 }

@@ -24,6 +24,8 @@ export class SceneDocument {
   readonly spawned = new Map<number, Entity>();
   /** Entities of the document that actions removed from the running world. */
   readonly absent = new Set<number>();
+  /** Entities whose models are not in the database yet: neither simulated nor drawn. */
+  readonly waiting = new Set<number>();
   readonly joints = new Map<number, Joint>();
   readonly actions = new Map<number, Action>();
   settings: SceneSettings = DEFAULT_SETTINGS;
@@ -45,6 +47,7 @@ export class SceneDocument {
     this.takeScene(hello.scene);
     for (const entity of hello.spawned ?? []) this.spawned.set(entity.index, entity);
     for (const index of hello.despawned ?? []) this.absent.add(index);
+    for (const index of hello.waiting ?? []) this.waiting.add(index);
     this.takeHeading(hello);
     this.setHistory(hello);
     this.changed.emit({ ...nothingChanged(), all: true, settings: true, joints: true, actions: true });
@@ -69,6 +72,14 @@ export class SceneDocument {
     this.spawned.delete(index);
     if (this.entities.has(index)) this.absent.add(index);
     this.changed.emit({ ...nothingChanged(), removed: [index] });
+  }
+
+  /** These entities wait for their models now; others have arrived. */
+  wait(indices: readonly number[]): void {
+    const before = [...this.waiting];
+    this.waiting.clear();
+    for (const index of indices) this.waiting.add(index);
+    this.changed.emit({ ...nothingChanged(), entities: [...new Set([...before, ...indices])].filter((index) => this.entities.has(index)) });
   }
 
   /** The running world has the document's entities again. */
@@ -99,6 +110,7 @@ export class SceneDocument {
     this.entities.clear();
     this.spawned.clear();
     this.absent.clear();
+    this.waiting.clear();
     this.joints.clear();
     this.actions.clear();
     for (const entity of scene.entities ?? []) this.entities.set(entity.index, entity);

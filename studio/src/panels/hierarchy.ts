@@ -49,7 +49,8 @@ export class Hierarchy {
 
   private row(entity: Entity): HTMLElement {
     const { parts } = this;
-    const kind = entity.shape?.type ?? "model";
+    const isWaiting = parts.document.waiting.has(entity.index);
+    const kind = isWaiting ? "waits for its model" : (entity.shape?.type ?? "model");
     const choose = (event: MouseEvent | KeyboardEvent): void => {
       if (event.ctrlKey || event.shiftKey || event.metaKey) parts.selection.toggle(entity.index);
       else parts.selection.set([entity.index]);
@@ -59,7 +60,7 @@ export class Hierarchy {
       {
         role: "option",
         tabindex: 0,
-        class: entity.enabled === false ? "row disabled" : "row",
+        class: entity.enabled === false || isWaiting ? "row disabled" : "row",
         "data-index": entity.index,
         onclick: choose,
         ondblclick: () => parts.view.rig.focus(parts.entities.boundsOf([entity.index], performance.now()), performance.now()),

@@ -8,6 +8,8 @@ import { element, setText, show } from "./element";
 import { ModelGrid } from "./model_grid";
 
 const SEARCH_DELAY_MS = 150;
+/** While the library fills, models that have come are shown at most so often. */
+const FILL_SHOWN_MS = 2000;
 const ALL = "";
 const FAVOURITES = " favourites";
 const RECENT = " recent";
@@ -33,6 +35,8 @@ export class ModelBrowser {
   private readonly empty = element("div", { class: "empty", "data-testid": "empty-result" });
   private readonly grid: ModelGrid;
   private timer = 0;
+  private fillTimer = 0;
+  private shownDone = 0;
 
   constructor(
     private readonly parts: Pick<Parts, "preferences" | "server" | "selection" | "picked" | "found" | "models" | "view">,
@@ -55,12 +59,29 @@ export class ModelBrowser {
     parts.server.changed.on(() => {
       if (parts.server.isOpen) this.refresh();
     });
+    parts.server.filling.on(({ done, state }) => this.followFill(done, state !== "running"));
     // Categories and search use these attributes, so that the results may have changed.
     parts.server.catalogChanged.on(({ attributes }) => {
       if (!attributes.some((name) => LISTED_BY.includes(name))) return;
       void this.loadCategories();
       this.grid.renew();
     });
+  }
+
+  /** Shows models that have come, now and then, and at the end. */
+  private followFill(done: number, isOver: boolean): void {
+    if (done === this.shownDone && !isOver) return;
+    this.shownDone = done;
+    if (isOver) clearTimeout(this.fillTimer);
+    if (this.fillTimer && !isOver) return;
+    this.fillTimer = window.setTimeout(
+      () => {
+        this.fillTimer = 0;
+        void this.loadCategories();
+        void this.grid.refresh();
+      },
+      isOver ? 0 : FILL_SHOWN_MS,
+    );
   }
 
   focusSearch(): void {
@@ -140,6 +161,11 @@ export class ModelBrowser {
     show(this.empty, total === 0);
     if (total > 0) return;
     const searched = this.words.value.trim() !== "";
+    const isFilling = !searched && this.parts.server.fill?.state === "running";
+    if (isFilling) {
+      this.empty.replaceChildren(element("strong", {}, "The library is being filled"), element("p", {}, "Models appear here as they come."));
+      return;
+    }
     this.empty.replaceChildren(
       element("strong", {}, searched ? `No model matches “${this.words.value.trim()}”` : "No models here yet"),
       element("p", {}, searched ? "Try fewer or shorter words, or another category." : "Drop a model file onto the scene to import it, or run “embody import”."),

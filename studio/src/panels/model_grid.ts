@@ -31,6 +31,8 @@ export class ModelGrid {
   private total = 0;
   private active = 0;
   private generation = 0;
+  /** Models have come, and are shown when the pointer leaves. */
+  private refreshWaits = false;
   /** Shown instead of a search. */
   private keys: readonly string[] | null = null;
 
@@ -47,6 +49,9 @@ export class ModelGrid {
         tabindex: 0,
         "data-testid": "model-grid",
         onscroll: () => this.lay(),
+        onpointerleave: () => {
+          if (this.refreshWaits) void this.refresh();
+        },
         onkeydown: (event: KeyboardEvent) => this.key(event),
         onfocus: () => this.lay(),
       },
@@ -82,6 +87,42 @@ export class ModelGrid {
     this.pages = new Map();
     void this.loadPage(Math.floor(this.active / PAGE));
     this.lay();
+  }
+
+  /** Models have come: shows them where the visible tiles are; the scroll position stays, and tiles of the same model stay as they are. */
+  async refresh(): Promise<void> {
+    // What a person is about to press must not move away; an empty grid has nothing to press.
+    if (this.total > 0 && this.root.matches(":hover")) {
+      this.refreshWaits = true;
+      return;
+    }
+    this.refreshWaits = false;
+    if (this.keys) return;
+    const generation = this.generation;
+    const { words, category } = this.search;
+    const { first, last } = this.visible();
+    const firstPage = Math.floor(first / PAGE);
+    const lastPage = Math.floor(Math.max(last - 1, first) / PAGE);
+    const pages = new Map<number, ModelSummary[]>();
+    let total = this.total;
+    for (let page = firstPage; page <= lastPage; ++page) {
+      const answer = await this.parts.server.command("catalog.search", { limit: PAGE, offset: page * PAGE, ...(words && { words }), ...(category && { category }) });
+      if (!answer || generation !== this.generation) return;
+      for (const model of answer.models) this.parts.models.learn(model);
+      pages.set(page, answer.models);
+      total = answer.total;
+    }
+    ++this.generation;
+    this.pages = pages;
+    this.total = total;
+    for (const [at, tile] of this.tiles) {
+      tile.setAttribute("aria-setsize", String(total));
+      if (tile.dataset["key"] === this.modelAt(at)?.key) continue;
+      tile.remove();
+      this.tiles.delete(at);
+    }
+    this.lay();
+    this.counted.emit(total);
   }
 
   focusFirst(): void {
@@ -134,14 +175,18 @@ export class ModelGrid {
     return Math.max(1, Math.floor(this.root.clientWidth / TILE_WIDTH));
   }
 
+  /** The tiles that are in sight, and some above and below: from `first` to before `last`. */
+  private visible(): { first: number; last: number } {
+    const top = Math.floor(this.root.scrollTop / TILE_HEIGHT) - SPARE_ROWS;
+    const bottom = Math.ceil((this.root.scrollTop + this.root.clientHeight) / TILE_HEIGHT) + SPARE_ROWS;
+    return { first: Math.max(0, top * this.columns), last: Math.min(this.total, bottom * this.columns) };
+  }
+
   /** Makes the visible tiles and removes the others. */
   private lay(): void {
     const columns = this.columns;
     this.canvas.style.height = `${Math.ceil(this.total / columns) * TILE_HEIGHT}px`;
-    const top = Math.floor(this.root.scrollTop / TILE_HEIGHT) - SPARE_ROWS;
-    const bottom = Math.ceil((this.root.scrollTop + this.root.clientHeight) / TILE_HEIGHT) + SPARE_ROWS;
-    const first = Math.max(0, top * columns);
-    const last = Math.min(this.total, bottom * columns);
+    const { first, last } = this.visible();
     for (const [at, tile] of this.tiles) {
       if (at >= first && at < last) continue;
       tile.remove();

@@ -213,7 +213,7 @@ export class EntityView {
     if (!entity) return;
     if (!this.motion.pose(index, 0, this.position, this.rotation))
       this.motion.place(index, positionOf(entity.pose), rotationOf(entity.pose));
-    if (entity.enabled === false || this.document.absent.has(index)) {
+    if (entity.enabled === false || this.document.absent.has(index) || this.document.waiting.has(index)) {
       this.take(index);
       return;
     }
