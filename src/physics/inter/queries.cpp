@@ -10,6 +10,13 @@ namespace embody::physics {
 
 using namespace state;
 
+namespace {
+
+/// Gaps beyond this need not be known where only overlaps count, m; at 0 separation() cannot tell a gap from a touch.
+constexpr double far_enough = 1e-3;
+
+}  // namespace
+
 std::optional<RayHit> cast_ray(const WorldState& world, Vec3 origin, Vec3 direction, double max_distance,
                                BodyHandle ignore) {
     const Vec3 unit = normalized(direction);
@@ -37,7 +44,8 @@ std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box) 
     if (!solid) return found;
     const Transform pose{box.center(), Quat{}};
     world.contacts.broad_phase.query(box, [&](std::uint32_t body) {
-        if (separation(*solid.value(), pose, *world.rigid.record(body).shape, world.rigid.pose(body), 0) > 0) return;
+        if (separation(*solid.value(), pose, *world.rigid.record(body).shape, world.rigid.pose(body), far_enough) > 0)
+            return;
         found.push_back(world.rigid.bodies.handle_at(body));
     });
     return found;
@@ -45,39 +53,41 @@ std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box) 
 
 namespace {
 
-// Conservative advancement straight down: the gap to the other body bounds the distance that the body can move.
-std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std::uint32_t other, double limit) {
-    constexpr double touch = 1e-6;       // m
-    constexpr int max_iterations = 256;  // of conservative advancement; the body stays above the ground then
-    const CollisionShape& shape = *world.rigid.record(body).shape;
-    const CollisionShape& ground = *world.rigid.record(other).shape;
-    Transform pose = world.rigid.pose(body);
-    const double start = pose.position.y;
-    double fallen = 0;
-    for (int iteration = 0; iteration < max_iterations && fallen <= limit; ++iteration) {
-        const double gap = separation(shape, pose, ground, world.rigid.pose(other), limit);
-        if (gap <= touch) return fallen;
-        fallen += gap;
-        pose.position.y = start - fallen;
-    }
-    return fallen <= limit ? std::optional(fallen) : std::nullopt;
+// The distance that the shape can move along the unit direction until it touches the other one.
+std::optional<double> cast_at(const ShapeCast& cast, const CollisionShape& other, const Transform& pose, double limit) {
+    const Transform end{cast.pose.position + cast.direction * limit, cast.pose.rotation};
+    const auto time = time_of_impact(*cast.shape, cast.pose, end, other, pose, 0);
+    return time ? std::optional(*time * limit) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance,
-                                    const std::function<bool(BodyHandle)>& ignores) {
-    const BodyRecord& record = world.rigid.record(body);
-    if (!record.shape || is_static_only(record.shape->definition()) || !(max_distance > 0)) return std::nullopt;
-    Bounds swept = record.shape->bounds(world.rigid.pose(body));
-    swept.lower.y -= max_distance;
+std::optional<double> cast_shape(const WorldState& world, const ShapeCast& cast, double max_distance,
+                                 const IgnoresBody& ignores) {
+    const double size = length(cast.direction);
+    if (!(max_distance > 0) || !std::isfinite(max_distance) || !(std::fabs(size - 1) < 1e-6)) return std::nullopt;
+    if (is_static_only(cast.shape->definition())) return std::nullopt;
+    const Bounds start = cast.shape->bounds(cast.pose);
+    Bounds swept = start;
+    swept.add(Bounds{start.lower + cast.direction * max_distance, start.upper + cast.direction * max_distance});
     std::optional<double> least;
     world.contacts.broad_phase.query(swept, [&](std::uint32_t other) {
-        if (other == body || (ignores && ignores(world.rigid.bodies.handle_at(other)))) return;
-        const auto distance = drop_onto(world, body, other, least ? *least : max_distance);
-        if (distance && (!least || *distance < *least)) least = distance;
+        if (ignores && ignores(world.rigid.bodies.handle_at(other))) return;
+        const auto distance =
+            cast_at(cast, *world.rigid.record(other).shape, world.rigid.pose(other), least ? *least : max_distance);
+        if (distance && (!least || *distance < *least)) least = std::fmax(*distance, 1e-300);
     });
     return least;
+}
+
+bool overlaps(const WorldState& world, const CollisionShape& shape, const Transform& pose, const IgnoresBody& ignores) {
+    if (is_static_only(shape.definition())) return false;
+    bool found = false;
+    world.contacts.broad_phase.query(shape.bounds(pose), [&](std::uint32_t other) {
+        if (found || (ignores && ignores(world.rigid.bodies.handle_at(other)))) return;
+        found = separation(shape, pose, *world.rigid.record(other).shape, world.rigid.pose(other), far_enough) <= 0;
+    });
+    return found;
 }
 
 }  // namespace embody::physics

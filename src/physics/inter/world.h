@@ -185,13 +185,19 @@ public:
                                                  BodyHandle ignore = {}) const;
     /// Bodies whose shapes overlap the box.
     [[nodiscard]] std::vector<BodyHandle> overlap_box(const Bounds& box) const;
-    /// World bounds of a body's shape; empty for a body without one.
+    /// World bounds of a body's shape, and of a shape at a pose; empty where there is none.
     [[nodiscard]] Bounds bounds(BodyHandle body) const;
+    [[nodiscard]] Bounds bounds(ShapeHandle shape, const Transform& pose) const;
+    using IgnoresBody = std::function<bool(BodyHandle)>;
     /// The distance that the body can move down (-Y) until it touches another; std::nullopt if it meets none within
-    /// `max_distance`. The body may overlap nothing at its start. It passes through the bodies that `ignores` (if
-    /// given) names.
+    /// `max_distance`. 0 where it overlaps one. It passes through the bodies that `ignores` (if given) names.
     [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance,
-                                                      const std::function<bool(BodyHandle)>& ignores = {}) const;
+                                                      const IgnoresBody& ignores = {}) const;
+    /// The same for a shape of this world, from a pose along a unit direction. It passes by what it does not approach.
+    [[nodiscard]] std::optional<double> cast_shape(ShapeHandle shape, const Transform& pose, Vec3 direction,
+                                                   double max_distance, const IgnoresBody& ignores = {}) const;
+    /// Whether the shape overlaps a body there. False for planes, triangles and heightfields, which have no inside.
+    [[nodiscard]] bool overlaps(ShapeHandle shape, const Transform& pose, const IgnoresBody& ignores = {}) const;
     /// Equal iff the states of all bodies are bit for bit equal.
     [[nodiscard]] std::uint64_t state_hash() const;
 

@@ -19,10 +19,28 @@ Bounds World::bounds(BodyHandle body) const {
     return state_->rigid.record(body.index).shape->bounds(state_->rigid.pose(body.index));
 }
 
-std::optional<double> World::drop_distance(BodyHandle body, double max_distance,
-                                           const std::function<bool(BodyHandle)>& ignores) const {
-    if (!contains(body)) return std::nullopt;
-    return physics::drop_distance(*state_, body.index, max_distance, ignores);
+Bounds World::bounds(ShapeHandle shape, const Transform& pose) const {
+    const ShapeRecord* record = state_->rigid.shapes.find(shape);
+    return record ? record->shape->bounds(pose) : Bounds{};
+}
+
+std::optional<double> World::drop_distance(BodyHandle body, double max_distance, const IgnoresBody& ignores) const {
+    if (!contains(body) || !state_->rigid.record(body.index).shape) return std::nullopt;
+    const auto skips = [&](BodyHandle other) { return other == body || (ignores && ignores(other)); };
+    const ShapeCast cast{state_->rigid.record(body.index).shape, state_->rigid.pose(body.index), {0, -1, 0}};
+    return physics::cast_shape(*state_, cast, max_distance, skips);
+}
+
+std::optional<double> World::cast_shape(ShapeHandle shape, const Transform& pose, Vec3 direction, double max_distance,
+                                        const IgnoresBody& ignores) const {
+    const ShapeRecord* record = state_->rigid.shapes.find(shape);
+    if (!record) return std::nullopt;
+    return physics::cast_shape(*state_, {record->shape.get(), pose, direction}, max_distance, ignores);
+}
+
+bool World::overlaps(ShapeHandle shape, const Transform& pose, const IgnoresBody& ignores) const {
+    const ShapeRecord* record = state_->rigid.shapes.find(shape);
+    return record && physics::overlaps(*state_, *record->shape, pose, ignores);
 }
 
 }  // namespace embody::physics

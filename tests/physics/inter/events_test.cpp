@@ -94,6 +94,34 @@ TEST(Queries, RayAndDropAndBoxFindTheBody) {
     EXPECT_EQ(found[0], box);
 }
 
+TEST(Queries, OverlapsAreNotNeighbours) {
+    Floor floor;
+    const auto box = floor.world->create_body({.shape = floor.box, .position = {0, 5, 0}}).value();
+    // Bounds in the broad phase are larger than the bodies.
+    EXPECT_TRUE(floor.world->overlap_box({{0.51, 4.6, -0.4}, {0.8, 5.4, 0.4}}).empty());
+    EXPECT_FALSE(floor.world->overlaps(floor.box, {{1.01, 5, 0}, {}}));
+    EXPECT_FALSE(floor.world->overlaps(floor.box, {{1.0001, 5, 0}, {}}));
+    EXPECT_TRUE(floor.world->overlaps(floor.box, {{0.99, 5, 0}, {}}));
+    EXPECT_FALSE(floor.world->overlaps(floor.box, {{0.99, 5, 0}, {}}, [&](BodyHandle body) { return body == box; }));
+}
+
+// A fall close beside a wall is as long as in the open: it ended after 256 gaps before.
+TEST(Queries, AShapeIsCastPastWhatItDoesNotApproach) {
+    Floor floor;
+    const auto wall = floor.world->create_shape({BoxShape{{0.1, 20, 5}}}).value();
+    ASSERT_TRUE(floor.world->create_body({.kind = BodyKind::static_body, .shape = wall, .position = {0, 20, 0}}));
+    for (const double gap : {1e-4, 1e-3, 5e-3}) {
+        const Transform start{{0.6 + gap, 10, 0}, {}};
+        const auto fall = floor.world->cast_shape(floor.box, start, {0, -1, 0}, 100);
+        ASSERT_TRUE(fall);
+        EXPECT_NEAR(*fall, 9.5, 1e-5);
+        const auto aside = floor.world->cast_shape(floor.box, start, {-1, 0, 0}, 100);
+        ASSERT_TRUE(aside);
+        EXPECT_NEAR(*aside, gap, 1e-6);
+        EXPECT_FALSE(floor.world->cast_shape(floor.box, start, {1, 0, 0}, 100));
+    }
+}
+
 TEST(Wake, RemovingTheFloorWakesWhatStoodOnIt) {
     Floor floor;
     const auto shelf =
