@@ -116,6 +116,9 @@ void add_identity(Rows& rows) {
         "1", 0, 0, 1);
     group.word({"placement", all_kinds, "Usual place", "Where such a thing usually stands or hangs."}, "floor",
                {"floor", "wall", "ceiling", "table", "ground", "free"});
+    group.word({"front", all_kinds, "Front",
+                "The side that faces the room when it stands or hangs at a wall, of the model as it is stored."},
+               "+z", {"+z", "-z", "+x", "-x"});
     group.number({"scale_to_m", all_kinds, "Metres per unit", "Length of one unit of the stored geometry."}, "m", 1,
                  1e-4, 1e3);
 }

@@ -285,6 +285,7 @@ Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool ke
         if (model && keys.contains(model->key)) meant.push_back(entity.definition);
     }
     for (const std::string& key : keys) state_->definitions.forget(key);
+    state_->shapes.release(state_->solid_key, std::exchange(state_->solid, {}));
     Result<void> all;
     for (const Entity& entity : meant) {
         Result<void> updated = state_->update(entity, keep_motion);

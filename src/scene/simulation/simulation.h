@@ -96,6 +96,9 @@ public:
     };
     [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance,
                                                  EntityIndex ignore = 0) const;
+    /// The shape of an entity, in the world or not, as one solid: to look where there is room for it. Valid until the
+    /// next call or edit.
+    Result<physics::ShapeHandle> solid_shape(const Entity& entity);
     [[nodiscard]] bool is_movable(EntityIndex entity) const;
     /// For points the state of the most awake one.
     [[nodiscard]] physics::SleepState sleep_state(EntityIndex entity) const;

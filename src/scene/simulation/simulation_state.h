@@ -62,6 +62,8 @@ struct Simulation::State {
     SharedShapes shapes;
     Liquids liquids;
     std::map<EntityIndex, Entity> templates;  ///< the document's entities, for actions that spawn
+    GeometryKey solid_key;       ///< of solid_shape(), kept since a drag asks for the same one again and again
+    physics::ShapeHandle solid;  ///< null: none yet
     std::map<EntityIndex, LiveEntity> live;
     std::vector<EntityIndex> indices;
     std::map<std::uint32_t, LiveJoint> joints;

@@ -9,6 +9,7 @@
 
 #include "foundation/result.h"
 #include "scene/file/json/field_reader.h"
+#include "scene/session/placement.h"
 #include "scene/session/session_state.h"
 
 namespace embody::scene {
@@ -49,7 +50,14 @@ Result<catalog::Catalog*> open_catalog(const SessionState& state);
 /// The rows of a model of the catalogue.
 Result<nlohmann::json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t id);
 
-/// Pose of `entity` when it is dropped where the ray hits the scene. It is not in the simulation.
-Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction);
+/// Where a pointer drops something: {origin, direction, snap?}.
+struct Drop {
+    PointerRay ray;
+    bool snap = true;
+};
+/// Reads the field `drop`, where there is one.
+void read_drop(FieldReader& reader, std::optional<Drop>& drop);
+/// An error where the document has no room for `count` more entities.
+Result<void> check_room(const Document& document, std::size_t count);
 
 }  // namespace embody::scene

@@ -36,15 +36,6 @@ Result<void> check_model(SessionState& state, const Entity& entity) {
     return Error{"entity." + found.error().where, found.error().why, found.error().remedy};
 }
 
-Result<void> check_room(const Document& document, std::size_t count) {
-    if (document.next_index > last_document_index - count + 1)
-        return Error{
-            "entity", "no index is left",
-            "give the entity with the highest index a lower one in the scene file, and take next_index out of it"};
-    if (document.entities.size() + count <= max_entities) return {};
-    return Error{"entity", "a scene can have " + std::to_string(max_entities) + " entities", "delete some first"};
-}
-
 // Floors, walls and ceilings that never move: they come locked.
 bool is_surroundings(SessionState& state, const Entity& entity) {
     static const std::set<std::string> categories = {"room", "ground",  "floor",     "floor slab",
@@ -61,15 +52,8 @@ Result<json> add(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
     const json* given = reader.need("entity", "the entity as in a scene file");
-    std::optional<Vec3> origin, direction;
-    if (const json* drop = reader.take("drop")) {
-        FieldReader ray(*drop, "drop", error);
-        ray.need("origin", "where the ray starts");
-        ray.need("direction", "where it goes");
-        ray.vector("origin", origin);
-        ray.vector("direction", direction);
-        ray.finish();
-    }
+    std::optional<Drop> drop;
+    read_drop(reader, drop);
     if (!reader.finish()) return *error;
     Result<Entity> read = entity_from_json(*given, "entity");
     if (!read.ok()) return read.error();
@@ -89,10 +73,11 @@ Result<json> add(SessionState& state, const json& params) {
     if (!given->contains("locked")) entity.locked = is_surroundings(state, entity);
 
     // Placed at the pointer.
-    if (origin) {
-        Result<Transform> pose = place_on_ray(state, entity, *origin, *direction);
-        if (!pose.ok()) return pose.error();
-        entity.pose = pose.value();
+    if (drop) {
+        Result<Placement> placed = place_on_ray(state, entity, drop->ray, {drop->snap, {}});
+        if (!placed.ok()) return placed.error();
+        entity.pose = placed.value().pose;
+        (void)hold_in_place(state, entity, placed.value().seat);
     }
     Edit edit = state.start_edit("Add " + entity.name);
     edit.next_after = entity.index + 1;
@@ -254,6 +239,15 @@ Result<json> lock(SessionState& state, const json& params) {
 }
 
 }  // namespace
+
+Result<void> check_room(const Document& document, std::size_t count) {
+    if (document.next_index > last_document_index - count + 1)
+        return Error{
+            "entity", "no index is left",
+            "give the entity with the highest index a lower one in the scene file, and take next_index out of it"};
+    if (document.entities.size() + count <= max_entities) return {};
+    return Error{"entity", "a scene can have " + std::to_string(max_entities) + " entities", "delete some first"};
+}
 
 std::span<const Command> entity_commands() {
     static constexpr Command commands[] = {

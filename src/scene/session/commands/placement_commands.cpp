@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include "scene/session/placement.h"
+
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 
-#include "attributes/physical_kind.h"
 #include "scene/file/json/parts.h"
+#include "scene/file/scene_file.h"
 #include "scene/session/commands/commands.h"
+#include "scene/session/formation.h"
 
 namespace embody::scene {
 
@@ -15,109 +17,78 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double max_ray_length = 1e4;  // m, of a pointer's ray
-constexpr double clearance = 1e-4;      // m, between a thing and the surface that it is placed on
-constexpr double wall_gap = 0.005;      // m, before a wall: closer, it would count as touching on the way down
-constexpr double steepest_floor = 0.5;  // cosine: a surface up to 60° steep counts as a floor
-
-// An entity that is in the running world only while it is measured.
-class Probe {
-public:
-    static Result<void> put(SessionState& state, const Entity& entity, std::optional<Probe>& probe) {
-        Entity still = entity;
-        still.enabled = true;
-        // A liquid, granular or deformable thing is placed as the solid thing that it would be.
-        const Result<attributes::AttributeSet> set = state.definitions.attributes.acting(entity);
-        if (set.ok() && changes_form(kind_of(set.value())))
-            still.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
-        if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
-        probe.emplace(state, entity.index);
-        return {};
-    }
-    Probe(SessionState& state, EntityIndex index) : state_(state), index_(index) {
-        state.simulation_is_pristine = false;
-    }
-    Probe(const Probe&) = delete;
-    Probe& operator=(const Probe&) = delete;
-    ~Probe() { (void)state_.simulation->remove(index_).ok(); }
-
-    [[nodiscard]] physics::BodyHandle body() const { return state_.simulation->body(index_); }
-    [[nodiscard]] Bounds bounds() const { return state_.simulation->world().bounds(body()); }
-    void move_to(const Transform& pose) { (void)state_.simulation->world().set_pose(body(), pose).ok(); }
-
-private:
-    SessionState& state_;
-    EntityIndex index_;
-};
-
-// The surface that the ray hits; without a hit the ground at height 0, or a place in front of the viewer.
-struct Surface {
-    Vec3 position;
-    Vec3 normal{0, 1, 0};
-};
-
-Surface find_surface(const Simulation& simulation, Vec3 origin, Vec3 direction) {
-    if (const auto hit = simulation.cast_ray(origin, direction, max_ray_length)) return {hit->position, hit->normal};
-    const double to_ground = direction.y < -1e-3 ? -origin.y / direction.y : -1;
-    if (to_ground > 0 && to_ground < 100) return {origin + direction * to_ground};
-    return {origin + direction * 5};
+json placement_json(const Placement& placement) {
+    return {{"pose", transform_to_json(placement.pose)},
+            {"on", placement.on != 0 ? json(placement.on) : json(nullptr)},
+            {"placement", to_text(placement.seat)}};
 }
 
-// Lowers the probe until it touches something; if it overlaps something at first, from slightly higher.
-Transform lower_until_touching(SessionState& state, Probe& probe, Transform pose) {
-    const physics::World& world = state.simulation->world();
-    for (const double lift : {0.002, 0.02, 0.1, 0.3, 1.0, 3.0}) {
-        Transform lifted = pose;
-        lifted.position.y += lift;
-        probe.move_to(lifted);
-        const std::optional<double> drop = world.drop_distance(probe.body(), lift + 0.05);
-        if (!drop) {
-            // Nothing below: the ray hit only the rim of the surface.
-            return pose;
+// Of a thing that is there: how it stands or hangs, and its point that a drag puts under the pointer.
+Result<json> present_placement(SessionState& state, EntityIndex index) {
+    Result<const Entity*> found = state.entity(index, "index");
+    if (!found.ok()) return found.error();
+    Entity entity = *found.value();
+    if (state.simulation->contains(index)) entity.pose = state.simulation->pose(index);
+    const Seat seat = present_seat(state, entity);
+    const Result<Vec3> point = placing_point(state, entity, seat);
+    if (!point.ok()) return point.error();
+    json result = placement_json({entity.pose, 0, seat});
+    result["point"] = vector_to_json(point.value());
+    return result;
+}
+
+Result<json> preview(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    if (params.contains("index")) {
+        EntityIndex index = 0;
+        need_index(reader, "index", index);
+        if (!reader.finish()) return *error;
+        return present_placement(state, index);
+    }
+    const json* given = reader.need("entity", "the entity as in a scene file");
+    std::optional<Drop> drop;
+    read_drop(reader, drop);
+    if (reader.ok() && !drop) reader.fail("drop", "is missing: the pointer's ray, {origin, direction}");
+    if (!reader.finish()) return *error;
+    Result<Entity> entity = entity_from_json(*given, "entity");
+    if (!entity.ok()) return entity.error();
+    const Result<Placement> placed = place_on_ray(state, entity.value(), drop->ray, {drop->snap, {}});
+    if (!placed.ok()) return placed.error();
+    return placement_json(placed.value());
+}
+
+// The first of the indices is the one under the pointer.
+Result<json> drag(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::optional<Drop> drop;
+    Edit edit = state.start_edit({});
+    need_indices(reader, state, indices);
+    read_drop(reader, drop);
+    reader.text("merge", edit.merge);
+    if (reader.ok() && !drop) reader.fail("drop", "is missing: the pointer's ray, {origin, direction}");
+    if (!reader.finish()) return *error;
+    const auto lead = params.at("indices").front().get<EntityIndex>();
+
+    Formation formation(state, lead, indices);
+    const Result<Placement> placed = formation.place(drop->ray, drop->snap);
+    if (!placed.ok()) return placed.error();
+    for (const Entity& entity : formation.members()) {
+        const Entity& before = *state.document.find(entity.index);
+        if (can_hang(state, before)) {
+            Entity after = entity;
+            if (entity.index == lead) (void)hold_in_place(state, after, placed.value().seat);
+            edit.changes.emplace_back(change_of(before, after));
+        } else {
+            edit.changes.emplace_back(PoseChange{entity.index, before.pose, entity.pose});
         }
-        if (*drop <= 1e-6) continue;
-        lifted.position.y -= std::max(0.0, *drop - clearance);
-        return lifted;
     }
-    return pose;
+    edit.label = "Move " + state.called(indices);
+    if (Result<void> moved = state.commit(std::move(edit)); !moved.ok()) return moved.error();
+    return placement_json(placed.value());
 }
-
-}  // namespace
-
-Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction) {
-    if (length(direction) < 1e-9) return Error{"drop.direction", "must not be zero"};
-    const Surface surface = find_surface(*state.simulation, origin, normalized(direction));
-    std::optional<Probe> probe;
-    if (Result<void> put = Probe::put(state, entity, probe); !put.ok()) return put.error();
-    Transform pose = entity.pose;
-    pose.position = surface.position;
-    probe->move_to(pose);
-    const Bounds bounds = probe->bounds();
-    if (bounds.is_empty() || !is_finite(bounds.size())) return pose;
-
-    // Floor: the lowest point goes on the surface.
-    if (surface.normal.y > steepest_floor) {
-        pose.position.y += surface.position.y - bounds.lower.y;
-        return lower_until_touching(state, *probe, pose);
-    }
-
-    // Ceiling or wall: moved along the normal, by the part of the bounds that would be behind the surface.
-    const Vec3 half = bounds.half_extents();
-    const Vec3 n = surface.normal;
-    const double reach = std::fabs(n.x) * half.x + std::fabs(n.y) * half.y + std::fabs(n.z) * half.z;
-    pose.position = surface.position + n * (reach + wall_gap) + (surface.position - bounds.center());
-    const Result<attributes::AttributeSet> set = state.simulation->attributes(entity.index);
-    const std::string usual_place = set.ok() ? set.value().word("placement", "floor") : "floor";
-    if (n.y < -steepest_floor || usual_place == "wall" || usual_place == "ceiling") return pose;
-
-    // A thing whose placement is the floor stands in front of the wall.
-    probe->move_to(pose);
-    const std::optional<double> drop = state.simulation->world().drop_distance(probe->body(), max_ray_length);
-    if (drop && *drop > 1e-6) pose.position.y -= std::max(0.0, *drop - clearance);
-    return pose;
-}
-
-namespace {
 
 Result<json> drop_to_floor(SessionState& state, const json& params) {
     std::optional<Error> error;
@@ -169,7 +140,10 @@ Result<json> pick(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> placement_commands() {
-    static constexpr Command commands[] = {{"entity.drop_to_floor", drop_to_floor}, {"scene.pick", pick}};
+    static constexpr Command commands[] = {{"entity.preview", preview},
+                                           {"entity.drag", drag},
+                                           {"entity.drop_to_floor", drop_to_floor},
+                                           {"scene.pick", pick}};
     return commands;
 }
 

@@ -45,6 +45,17 @@ bool need_indices(FieldReader& reader, const SessionState& state, std::vector<En
     return true;
 }
 
+void read_drop(FieldReader& reader, std::optional<Drop>& drop) {
+    const json* given = reader.take("drop");
+    if (!given) return;
+    drop.emplace();
+    FieldReader ray(*given, reader.path("drop"), reader.error());
+    need_vector(ray, "origin", "where the ray starts", drop->ray.origin);
+    need_vector(ray, "direction", "where it goes", drop->ray.direction);
+    ray.truth("snap", drop->snap);
+    ray.finish();
+}
+
 Result<json> done(const Result<void>& result) {
     if (!result.ok()) return result.error();
     return json::object();
