@@ -71,6 +71,7 @@ struct Entity {
     std::optional<std::array<double, 3>> color;
     double scale = 1;
     std::vector<Pin> pins;
+    std::string group;  ///< "Dining/Chairs": a group within a group; empty: in none
     bool locked = false;
 };
 
@@ -97,6 +98,8 @@ inline constexpr auto fields_of<Entity> = std::tuple{
     saved_when_set("category", &Entity::category, "of a primitive; a model brings its own"),
     saved_when_set("color", &Entity::color, "of a primitive, linear `[red, green, blue]`; null: the Studio's"),
     saved_when_set("scale", &Entity::scale, "of a model, uniform; its mass grows with the cube", {1e-4, 1e4}),
+    saved_when_set("group", &Entity::group,
+                   "the names of the groups that it is in, the outermost first, with `/` between them"),
     saved_when_set("pins", &Entity::pins, "of a thing of kind `soft`, `cloth` or `rope`: where it is held"),
     saved_when_set("locked", &Entity::locked, "whether its pose, size and existence are kept from edits by hand"),
 };

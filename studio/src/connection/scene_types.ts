@@ -136,6 +136,8 @@ export interface Entity {
   color?: Vector | null;
   /** of a model, uniform; its mass grows with the cube (0.0001 … 10000) */
   scale?: number;
+  /** the names of the groups that it is in, the outermost first, with `/` between them */
+  group?: string;
   /** of a thing of kind `soft`, `cloth` or `rope`: where it is held */
   pins?: Pin[];
   /** whether its pose, size and existence are kept from edits by hand */

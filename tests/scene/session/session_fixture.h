@@ -77,7 +77,7 @@ inline nlohmann::json random_command(Random& random, const Document& document, s
     const auto any_position = [&] { return json{random.between(-5, 5), random.between(0, 5), random.between(-5, 5)}; };
     const json box = {{"shape", {{"type", "box"}, {"half_extents", {0.2, 0.3, 0.4}}}},
                       {"pose", {{"position", any_position()}}}};
-    switch (random.below(16)) {
+    switch (random.below(25)) {
         case 0:
         case 1:
             return name = "entity.add", json{{"entity", box}};
@@ -115,6 +115,26 @@ inline nlohmann::json random_command(Random& random, const Document& document, s
                    json{{"trigger", {{"type", "time"}, {"time", 1}}}, {"effect", {{"type", "pause"}}}};
         case 14:
             return name = "scene.settings", json{{"gravity", any_position()}, {"title", "T"}};
+        case 15:
+            return name = "entity.drag", json{{"indices", {any_entity(), any_entity()}},
+                                              {"drop", {{"origin", any_position()}, {"direction", {0.3, -1, 0.2}}}}};
+        case 16:
+            return name = "entity.group", json{{"indices", {any_entity(), any_entity()}}};
+        case 17:
+            return name = "entity.ungroup", json{{"group", "Group"}};
+        case 18:
+            return name = "entity.array", json{{"indices", {any_entity()}}, {"counts", {2, 1, 2}}};
+        case 19:
+            return name = "entity.mirror", json{{"indices", {any_entity(), any_entity()}}, {"axis", "z"}};
+        case 20:
+            return name = "entity.align",
+                   json{{"indices", {any_entity(), any_entity()}}, {"axis", "x"}, {"at", "center"}};
+        case 21:
+            return name = "entity.turn", json{{"indices", {any_entity()}}, {"angle", 0.3}, {"merge", "turn"}};
+        case 22:
+            return name = "entity.set_group", json{{"indices", {any_entity()}}, {"group", "A/B"}};
+        case 23:
+            return name = "entity.paste", json{{"part", document_to_json(document)}, {"offset", any_position()}};
         default:
             if (!document.joints.empty()) return name = "joint.remove", json{{"index", document.joints.back().index}};
             if (!document.actions.empty()) return name = "action.remove", json{{"index", document.actions.back().id}};
