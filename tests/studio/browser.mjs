@@ -63,7 +63,7 @@ export async function pictureOfScene(page) {
   // And without messages that lie over it. The page's policy allows no style element, but a sheet that a script makes.
   await page.evaluate(() => {
     const sheet = new CSSStyleSheet();
-    sheet.replaceSync(".toasts, .overlays { visibility: hidden !important; }");
+    sheet.replaceSync(".toasts, .overlays, .cards { visibility: hidden !important; }");
     document.adoptedStyleSheets = [sheet];
   });
   const picture = await page.getByTestId("canvas").screenshot();
