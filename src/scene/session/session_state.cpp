@@ -194,6 +194,7 @@ void SessionState::record(Edit edit) {
 
 Result<void> SessionState::commit(Edit edit) {
     if (edit.changes.empty()) return {};
+    if (Result<void> allowed = check_locks(edit.changes); !allowed.ok()) return allowed;
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
     json told = told_changes(edit.changes);
     record(std::move(edit));
@@ -327,11 +328,23 @@ void SessionState::mark_saved() {
 // Names
 // ----------------------------------------------------------------------------------------------------------------
 
-Result<void> SessionState::check_unlocked(const std::vector<EntityIndex>& indices) const {
-    for (const EntityIndex index : indices) {
-        const Entity* entity = document.find(index);
-        if (!entity || !entity->locked) continue;
-        return Error{"entity " + std::to_string(index), called({index}) + " is locked", "unlock it first"};
+Result<void> SessionState::check_unlocked(EntityIndex index) const {
+    const Entity* entity = document.find(index);
+    if (!entity || !entity->locked) return {};
+    return Error{"entity " + std::to_string(index), called({index}) + " is locked", "unlock it first"};
+}
+
+Result<void> SessionState::check_locks(const std::vector<Change>& changes) const {
+    for (const Change& change : changes) {
+        const auto* entity = std::get_if<EntityChange>(&change);
+        const auto* pose = std::get_if<PoseChange>(&change);
+        EntityIndex touched = pose ? pose->index : 0;
+        if (entity && entity->before) {
+            const bool stays = entity->after && entity->same_geometry && entity->before->pose == entity->after->pose &&
+                               entity->before->scale == entity->after->scale;
+            if (!stays) touched = entity->before->index;
+        }
+        if (Result<void> allowed = check_unlocked(touched); !allowed.ok()) return allowed;
     }
     return {};
 }

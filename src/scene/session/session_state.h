@@ -100,14 +100,16 @@ struct SessionState {
     [[nodiscard]] nlohmann::json simulation_json() const;
     [[nodiscard]] nlohmann::json simulation_event() const;
 
-    /// An error that names the first locked one of these entities.
-    Result<void> check_unlocked(const std::vector<EntityIndex>& indices) const;
+    /// An error that names the entity where it is locked.
+    Result<void> check_unlocked(EntityIndex index) const;
     /// The document's entity, or an error that names the field.
     Result<const Entity*> entity(EntityIndex index, const std::string& where) const;
     /// The entity's name for a label, or "3 entities".
     [[nodiscard]] std::string called(const std::vector<EntityIndex>& indices) const;
 
 private:
+    /// An error where the changes move, scale, reshape or remove something that is locked.
+    Result<void> check_locks(const std::vector<Change>& changes) const;
     Result<void> sync(const Change& change);
     std::size_t sync_removals(std::span<const Change> changes);
     Result<void> sync_entity(const EntityChange& change);

@@ -328,7 +328,7 @@ TEST_F(PeopleTest, OpeningASceneAsksTheOthers) {
 }
 
 TEST_F(PeopleTest, LockedThingsKeepPoseSizeAndExistence) {
-    const EntityIndex floor = 1;
+    const EntityIndex floor = 1, box = add_box({3, 1, 0});
     EXPECT_TRUE(session_->document().find(floor)->locked) << "the floor of a new scene";
     const json before = document();
     for (const auto& [command, params] : std::vector<std::pair<std::string, json>>{

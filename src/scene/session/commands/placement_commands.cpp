@@ -96,7 +96,8 @@ Result<json> drop_to_floor(SessionState& state, const json& params) {
     std::vector<EntityIndex> indices;
     need_indices(reader, state, indices);
     if (!reader.finish()) return *error;
-    if (Result<void> free = state.check_unlocked(indices); !free.ok()) return free.error();
+    for (const EntityIndex index : indices)
+        if (Result<void> allowed = state.check_unlocked(index); !allowed.ok()) return allowed.error();
 
     // The lowest first: things on it follow.
     Simulation& simulation = *state.simulation;

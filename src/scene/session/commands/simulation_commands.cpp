@@ -64,7 +64,7 @@ Result<json> keep(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
     Edit edit = state.start_edit("Keep poses");
     for (const Entity& entity : state.document.entities) {
-        if (!state.simulation->contains(entity.index)) continue;
+        if (!state.simulation->contains(entity.index) || entity.locked) continue;
         const Transform pose = state.simulation->pose(entity.index);
         if (pose != entity.pose) edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose});
     }
