@@ -2,7 +2,9 @@
 import "./style/theme.css";
 import "./style/layout.css";
 import "./style/panels.css";
+import { ArrangeBar } from "./panels/arrange_bar";
 import { AttributeList } from "./panels/attribute_list";
+import { openContextMenu } from "./panels/context_menu";
 import { DragIn } from "./panels/drag_in";
 import { element, show } from "./panels/element";
 import { EntityFields } from "./panels/entity_fields";
@@ -56,7 +58,7 @@ function start(): void {
   const browser = new ModelBrowser(studio, new DragIn(studio));
   const left = leftPanel(browser, new Hierarchy(studio), new LibraryProgress(studio));
 
-  const actions: UserAction[] = makeActions(studio, gizmo, {
+  const actions: UserAction[] = makeActions(studio, gizmo, pointer, {
     scenes: () => void openScenes(studio),
     save: () => void saveScene(studio),
     saveAs: () => saveAs(studio),
@@ -74,6 +76,7 @@ function start(): void {
   actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
   new Keyboard(studio, actions, pointer);
+  pointer.menuWanted.on((at) => openContextMenu(studio, actions, at));
   new FileDrop(studio, () => browser.refresh());
   const toolbar = new Toolbar(studio, gizmo, actions, new PeopleBar(studio).root);
   const entityFields = new EntityFields(studio);
@@ -86,7 +89,7 @@ function start(): void {
     element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root),
     new StatusBar(studio).root,
   );
-  scene.append(new Overlays(studio).root, new PeopleCards(studio).root);
+  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root);
   document.body.append(new Toasts(studio).root);
 
   const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));

@@ -45,6 +45,10 @@ export interface TestHook {
   heard(): readonly Heard[];
   /** Draws the other people or not: pictures of two pages differ by them. */
   showPeople(shown: boolean): void;
+  /** The place where the page shows that what is carried over the scene would lie; null: it shows none. */
+  ghost(): { position: number[]; rotation: number[] } | null;
+  /** The place on the page where a point of the world is drawn. */
+  project(x: number, y: number, z: number): { x: number; y: number };
   /** Stops drawing, for screenshots; resume() starts it again. */
   halt(): void;
   resume(): void;
@@ -104,6 +108,14 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     showPeople: (shown) => {
       studio.view.people.group.visible = shown;
       studio.view.invalidate();
+    },
+    ghost: () => {
+      const ghost = studio.view.scene.getObjectByName("ghost");
+      return ghost?.visible ? { position: ghost.position.toArray(), rotation: ghost.quaternion.toArray() } : null;
+    },
+    project: (x, y, z) => {
+      const at = studio.view.project(new Vector3(x, y, z));
+      return { x: at.x, y: at.y };
     },
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),

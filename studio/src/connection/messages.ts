@@ -184,6 +184,23 @@ export interface Impact {
   b: number;
 }
 
+/** Where the pointer drops something. */
+export interface Drop extends Ray {
+  /** False: backs are not turned to walls, gaps are not closed. */
+  snap?: boolean;
+}
+
+/** Where a thing comes to lie, or lies. */
+export interface Placed {
+  pose: { position: Vector; rotation: Quaternion };
+  on: number | null;
+  placement: "floor" | "wall" | "ceiling";
+  /** Of a thing that is there: what a drag puts where the pointer's ray meets the scene. */
+  point?: Vector;
+}
+
+export type Axis = "x" | "y" | "z";
+
 /** The scene and its simulation at the time when a client connects. */
 export interface Hello {
   version: string;
@@ -271,7 +288,20 @@ export interface Commands {
   "scene.discard": [{ name: string }, unknown];
   "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
   "scene.settings": [Partial<SceneSettings> & { title?: string }, unknown];
-  "entity.add": [{ entity: NewEntity; drop?: Ray }, { index: number }];
+  "entity.add": [{ entity: NewEntity; drop?: Drop }, { index: number }];
+  "entity.preview": [{ entity: NewEntity; drop: Drop } | { index: number }, Placed];
+  "entity.drag": [{ indices: number[]; drop: Drop; merge?: string }, Placed];
+  "entity.move": [{ indices: number[]; offset: Vector; merge?: string }, unknown];
+  "entity.turn": [{ indices: number[]; angle: number; merge?: string }, unknown];
+  "entity.align": [{ indices: number[]; axis: Axis; at: "low" | "center" | "high" }, unknown];
+  "entity.distribute": [{ indices: number[]; axis: Axis }, unknown];
+  "entity.mirror": [{ indices: number[]; axis: Axis }, unknown];
+  "entity.array": [{ indices: number[]; counts: Vector; spacing?: Vector }, { indices: number[] }];
+  "entity.copy": [{ indices: number[] }, { part: unknown }];
+  "entity.paste": [{ part: unknown; drop?: Drop; offset?: Vector }, { indices: number[] }];
+  "entity.group": [{ indices: number[]; name?: string }, { group: string }];
+  "entity.ungroup": [{ group: string }, { indices: number[] }];
+  "entity.set_group": [{ indices: number[]; group: string; from?: string }, unknown];
   "entity.remove": [{ indices: number[] }, unknown];
   "entity.transform": [{ poses: PoseEdit[]; merge?: string }, unknown];
   "entity.update": [{ index: number; entity: NewEntity; merge?: string }, unknown];

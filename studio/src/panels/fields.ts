@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: MIT
 import { element } from "./element";
-import { NOISE, type NumberFormat, PLAIN } from "./number_text";
+import { NOISE, type NumberFormat, PLAIN, readNumber } from "./number_text";
 import { wordText } from "./words";
+
+/** What is typed for a value: a number, or a change of it: "+=0.5", "-=0.1", "*2", "/3", "+0.5". NaN where it is neither. */
+export function readChange(text: string, value: number | null, format: NumberFormat): number {
+  const change = /^\s*(\+=|-=|\*=|\/=|\+|\*|\/)\s*(.+)$/.exec(text);
+  if (!change) return format.read(text);
+  const by = readNumber(change[2]!);
+  if (value === null) return NaN;
+  const sign = change[1]![0];
+  return sign === "+" ? value + by : sign === "-" ? value - by : sign === "*" ? value * by : value / by;
+}
 
 export interface Field<Value> {
   root: HTMLElement;
@@ -34,7 +44,7 @@ export function numberField(label: string, unit: string, commit: (value: number)
     "aria-label": hasUnit ? `${label}, ${unit}` : label,
     autocomplete: "off",
     spellcheck: "false",
-    title: `${label}\nArrow keys: a little more or less, with Shift ten times that`,
+    title: `${label}\nArrow keys: a little more or less, with Shift ten times that\n+0.5, -=0.1, *2: by so much`,
   });
   const behind = hasUnit ? element("span", { class: "unit" }, unit) : null;
   const root = element("span", { class: "field" }, mark ? element("span", { class: "mark", "aria-hidden": "true" }, mark) : null, input, behind);
@@ -42,9 +52,10 @@ export function numberField(label: string, unit: string, commit: (value: number)
   const setError = (reason: string | null): void => markError(root, input, reason);
   const take = (): void => {
     if (input.value === shown) return;
-    const typed = format.read(input.value);
-    if (Number.isNaN(typed)) return setError(format.expected);
+    const typed = readChange(input.value, value, format);
+    if (Number.isNaN(typed)) return setError(`${format.expected}; a change is typed as +=0.5 or *2`);
     setError(null);
+    if (typed !== format.read(input.value)) input.value = format.write(typed);
     shown = input.value;
     value = typed;
     commit(typed);

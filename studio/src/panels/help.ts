@@ -7,11 +7,15 @@ import { CONTROLS, HAND_CONTROLS } from "../vr/controls";
 import { element } from "./element";
 
 const MOUSE: readonly (readonly [string, string])[] = [
+  ["Left drag on a thing", "move it over floors, onto tables and along walls; with Shift without snapping"],
   ["Left drag on empty space, or on a locked thing", "turn the view"],
   ["Middle drag, or Shift + left drag", "move the view"],
   ["Wheel", "go nearer or farther"],
   ["Right drag, with W A S D Q E", "look around and fly"],
   ["Click", "select; Shift or Ctrl adds"],
+  ["Right click", "what can be done with what is under the pointer"],
+  ["Alt + wheel", "turn the selection by 15°"],
+  ["Alt + click", "one thing of a group alone"],
   ["Ctrl + drag", "select what is in the rectangle"],
   ["Left drag on a body while playing", "pull it with a spring"],
   ["Left drag on a body with the move tool", "slide it sideways at its height"],

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+import { isInGroup, membersOf } from "../document/groups";
 import { nameOf } from "../document/scene_document";
 import type { Entity } from "../connection/scene_types";
 import type { Parts } from "../parts";
@@ -6,19 +7,27 @@ import { icon } from "../tools/icons";
 import { setLocked } from "../tools/locks";
 import { element } from "./element";
 
-/** The list shows no more rows than this; the filter finds the rest. */
+/** The tree shows no more rows than this; the filter finds the rest. */
 const MOST_ROWS = 400;
 const DELAY_MS = 80;
 
-/** A list of all entities by name, to find and select those that are small, hidden or far away. */
+/** What a drag from the tree carries: things, or a group as a whole. */
+type Carried = { indices: number[]; from?: string };
+
+/** All entities by name in their groups: to find and select those that are small, hidden or far away, and to put them into groups by dragging. */
 export class Hierarchy {
   readonly root: HTMLElement;
-  private readonly list = element("ul", { role: "listbox", "aria-label": "Entities", "aria-multiselectable": "true", "data-testid": "hierarchy" });
+  private readonly list = element("ul", { role: "tree", "aria-label": "Entities", "aria-multiselectable": "true", "data-testid": "hierarchy" });
   private readonly filter = element("input", { type: "search", placeholder: "Find in the scene", "aria-label": "Find in the scene", oninput: () => this.fill() });
+  private readonly folded = new Set<string>();
+  private carried: Carried | null = null;
+  private rows = 0;
   private timer = 0;
 
   constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "entities" | "view">) {
     this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
+    // Beside the rows: out of all groups.
+    this.takesDrops(this.list, "");
     parts.document.changed.on(() => {
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => this.fill(), DELAY_MS);
@@ -29,9 +38,10 @@ export class Hierarchy {
   private fill(): void {
     const words = this.filter.value.trim().toLowerCase();
     const { entities, spawned } = this.parts.document;
-    const all = [...entities.values(), ...spawned.values()].filter((entity) => nameOf(entity).toLowerCase().includes(words));
-    const rows = all.slice(0, MOST_ROWS).map((entity) => this.row(entity));
-    if (all.length > MOST_ROWS) rows.push(element("li", { class: "note" }, `… and ${all.length - MOST_ROWS} more: type a part of a name`));
+    const all = [...entities.values(), ...spawned.values()].filter((entity) => `${nameOf(entity)} ${entity.group ?? ""}`.toLowerCase().includes(words));
+    this.rows = 0;
+    const rows = this.branch(all, "", 1);
+    if (this.rows > MOST_ROWS) rows.push(element("li", { class: "note" }, "… and more: type a part of a name"));
     if (all.length === 0) rows.push(element("li", { class: "note" }, words ? "Nothing in the scene has that name" : "The scene is empty"));
     const focused = this.focused();
     this.list.replaceChildren(...rows);
@@ -47,20 +57,86 @@ export class Hierarchy {
     return `[data-index="${row.dataset["index"]}"]${activeElement === row ? "" : " .padlock"}`;
   }
 
-  private row(entity: Entity): HTMLElement {
+  /** The rows of a group, or of all: its groups first. */
+  private branch(all: readonly Entity[], group: string, level: number): HTMLElement[] {
+    const prefix = group ? `${group}/` : "";
+    const inner = new Set<string>();
+    const own: Entity[] = [];
+    for (const entity of all) {
+      const path = entity.group ?? "";
+      if (path === group) own.push(entity);
+      else if (path.startsWith(prefix)) inner.add(prefix + path.slice(prefix.length).split("/")[0]);
+    }
+    const rows: HTMLElement[] = [];
+    for (const path of inner) {
+      if (++this.rows > MOST_ROWS) return rows;
+      const members = all.filter((entity) => isInGroup(entity.group, path));
+      rows.push(this.groupRow(path, members, level));
+    }
+    for (const entity of own) {
+      if (++this.rows > MOST_ROWS) return rows;
+      rows.push(this.row(entity, level));
+    }
+    return rows;
+  }
+
+  private groupRow(path: string, members: readonly Entity[], level: number): HTMLElement {
+    const open = !this.folded.has(path);
+    const flip = (event: Event): void => {
+      event.stopPropagation();
+      if (open) this.folded.add(path);
+      else this.folded.delete(path);
+      this.fill();
+    };
+    const choose = (event: MouseEvent | KeyboardEvent): void => {
+      event.stopPropagation();
+      this.choose(membersOf(this.parts.document, path), event);
+    };
+    const title = element(
+      "div",
+      {
+        class: "row group-row",
+        tabindex: 0,
+        draggable: "true",
+        "data-group": path,
+        title: "Click: select the group. Double click: rename it",
+        onclick: choose,
+        ondblclick: () => this.rename(title, path),
+        onkeydown: (event: KeyboardEvent) => {
+          if (event.key === "ArrowLeft" || event.key === "ArrowRight") flip(event);
+          else if (event.key === "F2") this.rename(title, path);
+          else this.key(event, choose);
+        },
+      },
+      element("button", { class: "fold", "aria-label": open ? "Fold" : "Unfold", tabindex: -1, onclick: flip }, open ? "▾" : "▸"),
+      element("span", {}, path.split("/").at(-1)!),
+      element("span", { class: "row-kind" }, String(members.length)),
+    );
+    title.style.setProperty("--level", String(level));
+    this.takesDrops(title, path);
+    const parent = path.includes("/") ? path.slice(0, path.lastIndexOf("/")) : "";
+    title.addEventListener("dragstart", (event) => this.carry(event, { indices: members.map(({ index }) => index), from: parent }));
+    const item = element("li", { role: "treeitem", "aria-expanded": String(open), "aria-level": level, "aria-label": path }, title);
+    if (open) item.append(element("ul", { role: "group" }, ...this.branch(members, path, level + 1)));
+    return item;
+  }
+
+  private row(entity: Entity, level: number): HTMLElement {
     const { parts } = this;
     const isWaiting = parts.document.waiting.has(entity.index);
     const kind = isWaiting ? "waits for its model" : (entity.shape?.type ?? "model");
     const choose = (event: MouseEvent | KeyboardEvent): void => {
-      if (event.ctrlKey || event.shiftKey || event.metaKey) parts.selection.toggle(entity.index);
-      else parts.selection.set([entity.index]);
+      event.stopPropagation();
+      this.choose([entity.index], event);
     };
-    return element(
+    const row = element(
       "li",
       {
-        role: "option",
+        role: "treeitem",
         tabindex: 0,
+        draggable: "true",
         class: entity.enabled === false || isWaiting ? "row disabled" : "row",
+        "aria-level": level,
         "data-index": entity.index,
         onclick: choose,
         ondblclick: () => parts.view.rig.focus(parts.entities.boundsOf([entity.index], performance.now()), performance.now()),
@@ -70,6 +146,13 @@ export class Hierarchy {
       element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
       parts.document.spawned.has(entity.index) ? null : this.padlock(entity),
     );
+    row.style.setProperty("--level", String(level));
+    row.addEventListener("dragstart", (event) => {
+      const chosen = parts.selection.has(entity.index) ? [...parts.selection.indices] : [entity.index];
+      this.carry(event, { indices: chosen });
+    });
+    this.takesDrops(row, entity.group ?? "");
+    return row;
   }
 
   /** Shown on locked entities, and under the pointer on the others. */
@@ -90,17 +173,78 @@ export class Hierarchy {
     );
   }
 
+  private choose(indices: readonly number[], event: MouseEvent | KeyboardEvent): void {
+    const { selection } = this.parts;
+    if (!(event.ctrlKey || event.shiftKey || event.metaKey)) selection.set(indices);
+    else if (indices.every((index) => selection.has(index))) selection.set(selection.indices.filter((index) => !indices.includes(index)));
+    else selection.set([...selection.indices, ...indices]);
+  }
+
+  private carry(event: DragEvent, carried: Carried): void {
+    event.stopPropagation();
+    this.carried = carried;
+    event.dataTransfer?.setData("text/plain", `${carried.indices.length}`);
+    if (event.dataTransfer) event.dataTransfer.effectAllowed = "move";
+  }
+
+  /** What is dropped here comes into this group. */
+  private takesDrops(target: HTMLElement, group: string): void {
+    target.addEventListener("dragover", (event) => {
+      if (!this.carried) return;
+      event.preventDefault();
+      event.stopPropagation();
+      target.classList.add("drop-target");
+    });
+    target.addEventListener("dragleave", () => target.classList.remove("drop-target"));
+    target.addEventListener("drop", (event) => {
+      event.preventDefault();
+      event.stopPropagation();
+      target.classList.remove("drop-target");
+      const carried = this.carried;
+      this.carried = null;
+      if (carried) void this.parts.server.command("entity.set_group", { ...carried, group });
+    });
+  }
+
+  private rename(title: HTMLElement, path: string): void {
+    const parent = path.includes("/") ? path.slice(0, path.lastIndexOf("/") + 1) : "";
+    const field = element("input", { type: "text", value: path.slice(parent.length), "aria-label": "Name of the group" });
+    let ended = false;
+    const end = (keep: boolean): void => {
+      if (ended) return;
+      ended = true;
+      const name = field.value.trim();
+      if (keep && name && parent + name !== path)
+        void this.parts.server.command("entity.set_group", { indices: membersOf(this.parts.document, path), from: path, group: parent + name.replaceAll("/", " ") });
+      this.fill();
+    };
+    field.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter") end(true);
+      else if (event.key === "Escape") end(false);
+    });
+    field.addEventListener("blur", () => end(true));
+    title.replaceChildren(field);
+    field.select();
+  }
+
   private key(event: KeyboardEvent, choose: (event: KeyboardEvent) => void): void {
-    const row = event.currentTarget as HTMLElement;
+    const rows = [...this.list.querySelectorAll<HTMLElement>(".row")];
+    const now = rows.indexOf(event.currentTarget as HTMLElement);
     if (event.key === "Enter") choose(event);
-    else if (event.key === "ArrowDown") (row.nextElementSibling as HTMLElement | null)?.focus();
-    else if (event.key === "ArrowUp") (row.previousElementSibling as HTMLElement | null)?.focus();
+    else if (event.key === "ArrowDown") rows[now + 1]?.focus();
+    else if (event.key === "ArrowUp") rows[now - 1]?.focus();
     else return;
     event.preventDefault();
   }
 
   private mark(): void {
+    const { selection, document } = this.parts;
     for (const row of this.list.querySelectorAll<HTMLElement>("[data-index]"))
-      row.setAttribute("aria-selected", String(this.parts.selection.has(Number(row.dataset["index"]))));
+      row.setAttribute("aria-selected", String(selection.has(Number(row.dataset["index"]))));
+    for (const row of this.list.querySelectorAll<HTMLElement>("[data-group]")) {
+      const all = membersOf(document, row.dataset["group"]!);
+      row.closest("[role=treeitem]")!.setAttribute("aria-selected", String(all.length > 0 && all.every((index) => selection.has(index))));
+    }
   }
 }

@@ -11,6 +11,8 @@ const SEARCH_DELAY_MS = 150;
 /** While the library fills, models that have come are shown at most so often. */
 const FILL_SHOWN_MS = 2000;
 const ALL = "";
+/** Of a category so many are compared. */
+const MOST_ALIKE = 200;
 const FAVOURITES = " favourites";
 const RECENT = " recent";
 const LISTED_BY = ["category", "subcategory", "kind"];
@@ -45,6 +47,7 @@ export class ModelBrowser {
     this.grid = new ModelGrid(parts, dragIn);
     this.grid.counted.on((total) => this.showCount(total));
     this.grid.used.on((model) => this.remember(model));
+    this.grid.likeWanted.on((model) => void this.showLike(model));
     dragIn.added.on((model) => this.remember(model));
     this.root = element(
       "div",
@@ -154,6 +157,19 @@ export class ModelBrowser {
   private showKeys(keys: string[], text: string): void {
     this.parts.found = { models: { keys }, text };
     void this.grid.showKeys(keys);
+  }
+
+  /** Models of the same category, those of the most similar size first. */
+  private async showLike(model: ModelSummary): Promise<void> {
+    const answer = await this.parts.server.command("catalog.search", { category: model.category, limit: MOST_ALIKE });
+    if (!answer) return;
+    const difference = (other: ModelSummary) =>
+      Math.hypot(...other.size.map((length, axis) => Math.log(Math.max(length, 1e-3) / Math.max(model.size[axis]!, 1e-3)))) + (other.subcategory === model.subcategory ? 0 : 0.5);
+    const keys = answer.models.filter(({ key }) => key !== model.key).sort((a, b) => difference(a) - difference(b)).map(({ key }) => key);
+    const text = `like “${model.name}”`;
+    this.parts.found = { models: { keys: [model.key, ...keys] }, text };
+    await this.grid.showKeys([model.key, ...keys]);
+    setText(this.count, `${keys.length.toLocaleString("en")} ${text}`);
   }
 
   private showCount(total: number): void {

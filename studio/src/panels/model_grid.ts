@@ -5,6 +5,7 @@ import { Signal } from "../signal";
 import type { Parts } from "../parts";
 import { addInFront } from "../tools/ghost";
 import type { DragIn } from "./drag_in";
+import { openMenu } from "./context_menu";
 import { element } from "./element";
 import { icon } from "../tools/icons";
 
@@ -24,6 +25,8 @@ export class ModelGrid {
   readonly root: HTMLElement;
   readonly counted = new Signal<number>();
   readonly used = new Signal<ModelSummary>();
+  /** The user asked for models of the same category and a similar size. */
+  readonly likeWanted = new Signal<ModelSummary>();
   private readonly canvas = element("div", { class: "tiles" });
   private search: Search = { words: "", category: "" };
   private pages = new Map<number, ModelSummary[] | "asked">();
@@ -222,6 +225,7 @@ export class ModelGrid {
         "data-key": model.key,
         onclick: () => this.activate(at),
         ondblclick: () => this.add(model),
+        oncontextmenu: (event: MouseEvent) => this.openMenu(event, model),
       },
       element("img", { src: this.parts.models.thumbnail(model), alt: "", loading: "lazy", draggable: "false" }),
       element("span", { class: "tile-name" }, model.name),
@@ -232,6 +236,31 @@ export class ModelGrid {
     this.tiles.set(at, tile);
     this.canvas.append(tile);
     return tile;
+  }
+
+  private openMenu(event: MouseEvent, model: ModelSummary): void {
+    event.preventDefault();
+    const { preferences } = this.parts;
+    const favourites = preferences.get("favourites");
+    const is = favourites.includes(model.key);
+    openMenu(
+      [
+        [
+          { label: "Add to the scene", run: () => this.add(model) },
+          { label: "Others like this", id: "like", run: () => this.likeWanted.emit(model) },
+        ],
+        [
+          {
+            label: is ? "No favourite any more" : "Favourite",
+            run: () => {
+              preferences.set("favourites", is ? favourites.filter((key) => key !== model.key) : [model.key, ...favourites]);
+              this.lay();
+            },
+          },
+        ],
+      ],
+      { x: event.clientX, y: event.clientY },
+    );
   }
 
   private favouriteButton(model: ModelSummary): HTMLElement {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 import type { IconName } from "./icons";
 import type { Parts } from "../parts";
+import { arrangeActions } from "./arrange_actions";
+import { clipboardActions } from "./clipboard";
 import { addInFront } from "./ghost";
 import type { Gizmo } from "./gizmo";
 import { allLocked, toggleLock, unlocked, withoutLocked } from "./locks";
+import type { Pointer } from "./pointer";
 import { PRIMITIVES } from "./primitives";
 
 /** A command for the user: by button, key or command palette. */
@@ -14,6 +17,10 @@ export interface UserAction {
   /** Names as keyName() writes them; the first is shown. */
   keys: string[];
   icon?: IconName;
+  /** The browser itself does it on this key, by an event of its own. */
+  native?: boolean;
+  /** Holding the key down does it again and again. */
+  repeats?: boolean;
   /** Whether the action can be used now; missing: always. */
   possible?: () => boolean;
   /** For switches: whether it is on. */
@@ -35,10 +42,12 @@ export interface Openers {
   history(): void;
 }
 
-export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view" | "framing">, gizmo: Gizmo, open: Openers): UserAction[] {
+export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view" | "framing">, gizmo: Gizmo, pointer: Pick<Pointer, "last">, open: Openers): UserAction[] {
   return [
     ...sceneActions(parts, open),
     ...editActions(parts, open),
+    ...clipboardActions(parts, pointer),
+    ...arrangeActions(parts),
     ...toolActions(parts, gizmo),
     ...simulationActions(parts),
     ...viewActions(parts, open),
@@ -80,13 +89,13 @@ function editActions(parts: Pick<Parts, "server" | "notices" | "document" | "sel
   return [
     { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
     { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
-    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
+    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete", "Backspace"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
     { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
     { id: "edit.select_all", label: "Select all that is not locked", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(unlocked(parts, document.entities.keys())) },
     { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
     { id: "edit.lock", label: "Lock or unlock", group: "Edit", keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
     { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
-    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
+    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
   ];
 }
 
@@ -146,8 +155,8 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
       on: () => parts.playback.playing,
       run: () => void parts.server.command(parts.playback.playing ? "simulation.pause" : "simulation.play", {}),
     },
-    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", run: () => void parts.server.command("simulation.step", { count: 1 }) },
-    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Backspace"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
+    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
+    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
     { id: "simulation.keep", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
   ];
 }

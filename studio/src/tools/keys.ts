@@ -32,7 +32,7 @@ export class Keyboard {
     const name = keyName(event);
     if (this.triggerSceneAction(name, event)) return;
     const action = this.actions.find((each) => keysOf(this.parts, each).includes(name));
-    if (!action || (event.repeat && action.id !== "simulation.step")) return;
+    if (!action || action.native || (event.repeat && !action.repeats)) return;
     // Space and Enter press a button that has the focus.
     if ((name === "Space" || name === "Enter") && event.target instanceof HTMLButtonElement) return;
     event.preventDefault();

@@ -7,6 +7,10 @@ import type { Gizmo } from "./gizmo";
 import { isLocked, unlocked } from "./locks";
 import { PoseDrag } from "./poses";
 import { SpringLine } from "./spring_line";
+import { SurfaceDrag } from "./surface_drag";
+import { turnByWheel } from "./arrange_actions";
+import { withGroups } from "../document/groups";
+import { Signal } from "../signal";
 
 /** A press that moves less than this is a click, px. */
 const CLICK_REACH = 4;
@@ -16,12 +20,17 @@ type Gesture =
   | { kind: "press"; hit: Hit | null }
   | { kind: "box"; frame: HTMLElement }
   | { kind: "grab"; plane: Plane; sending: boolean; newer: Vector3 | null }
+  | { kind: "carry"; drag: SurfaceDrag }
   | { kind: "slide"; plane: Plane; from: Vector3; drag: PoseDrag };
 
 /** The mouse on the picture: selects, drags, pulls bodies while they move, and moves the camera. */
 export class Pointer {
   /** The right button is down: letter keys move the camera instead of choosing tools. */
   flying = false;
+  /** A click with the right button at a place of the page: what can be done there? */
+  readonly menuWanted = new Signal<{ x: number; y: number }>();
+  /** Where the pointer was last over the picture. */
+  readonly last = { x: 0, y: 0, over: false };
   private gesture: Gesture | null = null;
   private startX = 0;
   private startY = 0;
@@ -42,6 +51,8 @@ export class Pointer {
     canvas.addEventListener("pointerup", (event) => this.release(event));
     canvas.addEventListener("pointercancel", (event) => this.release(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("pointermove", (event) => Object.assign(this.last, { x: event.clientX, y: event.clientY, over: true }));
+    canvas.addEventListener("pointerleave", () => (this.last.over = false));
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     addEventListener("keydown", (event) => this.flightKey(event, true));
     addEventListener("keyup", (event) => this.flightKey(event, false));
@@ -79,6 +90,7 @@ export class Pointer {
     else if (gesture.kind === "look") view.rig.look(dx, dy);
     else if (gesture.kind === "grab") this.pull(event);
     else if (gesture.kind === "slide") this.slide(gesture, event);
+    else if (gesture.kind === "carry") gesture.drag.moveTo(event.clientX, event.clientY, !event.shiftKey);
     else if (gesture.kind === "box") this.stretchBox(gesture.frame, event);
   }
 
@@ -89,6 +101,7 @@ export class Pointer {
     if (event.ctrlKey || event.metaKey) this.gesture = { kind: "box", frame: this.makeBox() };
     else if (movable && parts.playback.playing && !event.shiftKey) this.beginGrab(hit);
     else if (movable && !parts.playback.playing && this.gizmo.tool === "move" && !event.shiftKey) this.beginSlide(hit);
+    else if (hit !== null && !parts.playback.playing && this.gizmo.tool === "select" && !event.shiftKey && this.isLoose(hit.index)) this.beginCarry(hit);
     else this.gesture = { kind: event.shiftKey ? "pan" : "orbit" };
   }
 
@@ -97,6 +110,20 @@ export class Pointer {
     const shape = this.parts.document.entity(index)?.shape?.type;
     if (shape === "plane" || shape === "heightfield" || shape === "mesh") return false;
     return !this.parts.playback.playing || this.parts.motion.state(index) !== BodyState.still;
+  }
+
+  /** Walls and floors stay: a drag on them turns the camera. What hangs on them is fixed, too, but is a thing of its own. */
+  private isLoose(index: number): boolean {
+    const entity = this.parts.document.entity(index);
+    if (!entity || !this.isMovable(index) || ("locked" in entity && entity["locked"] === true)) return false;
+    return this.parts.motion.state(index) !== BodyState.still || entity.model !== undefined || entity.attributes?.["placement"] !== undefined;
+  }
+
+  private beginCarry(hit: Hit): void {
+    const { selection, document } = this.parts;
+    if (!selection.has(hit.index)) selection.set(withGroups(document, [hit.index]));
+    this.parts.view.canvas.classList.add("carrying");
+    this.gesture = { kind: "carry", drag: new SurfaceDrag(this.parts, hit.index, selection.indices, this.startX, this.startY) };
   }
 
   private beginGrab(hit: Hit): void {
@@ -159,15 +186,32 @@ export class Pointer {
     }
     else if (gesture.kind === "slide") void gesture.drag.end();
     else if (gesture.kind === "box") this.chooseInBox(gesture.frame);
-    else if (gesture.kind === "look") this.stopFlight();
+    else if (gesture.kind === "carry") {
+      this.parts.view.canvas.classList.remove("carrying");
+      void gesture.drag.end();
+    } else if (gesture.kind === "look") {
+      this.stopFlight();
+      if (!this.moved) this.openMenu(event);
+    }
+  }
+
+  /** The menu is for what is under the pointer: that is selected first, unless it is already. */
+  private openMenu(event: PointerEvent): void {
+    const { view, selection, document } = this.parts;
+    const hit = view.pick(event.clientX, event.clientY);
+    if (!hit) selection.clear();
+    else if (!selection.has(hit.index)) selection.set(withGroups(document, [hit.index]));
+    this.menuWanted.emit({ x: event.clientX, y: event.clientY });
   }
 
   private click(hit: Hit | null, event: PointerEvent): void {
-    const { selection } = this.parts;
+    const { selection, document } = this.parts;
+    // With Alt the thing alone, not its group.
+    const chosen = hit ? (event.altKey ? [hit.index] : withGroups(document, [hit.index])) : [];
     if (event.shiftKey || event.ctrlKey || event.metaKey) {
-      if (hit) selection.toggle(hit.index);
-    } else if (hit) selection.set([hit.index]);
-    else selection.clear();
+      if (hit && selection.has(hit.index)) selection.set(selection.indices.filter((index) => !chosen.includes(index)));
+      else selection.set([...selection.indices, ...chosen]);
+    } else selection.set(chosen);
   }
 
   private makeBox(): HTMLElement {
@@ -197,13 +241,15 @@ export class Pointer {
       const at = view.project(centre);
       return depth < 1 && at.x >= box.left && at.x <= box.right && at.y >= box.top && at.y <= box.bottom;
     });
-    selection.set([...selection.indices, ...chosen]);
+    selection.set(withGroups(document, [...selection.indices, ...chosen]));
   }
 
   private wheel(event: WheelEvent): void {
     event.preventDefault();
     // Wheels report lines or pixels; a notch is 3 lines or about 100 pixels.
     const notches = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY / 3 : event.deltaY / 100;
+    // Some systems turn a wheel with Alt or Shift into a sideways one.
+    if (event.altKey && this.parts.selection.indices.length > 0) return turnByWheel(this.parts, notches || Math.sign(event.deltaX));
     this.parts.view.rig.zoom(Math.min(Math.max(notches, -3), 3));
   }
 

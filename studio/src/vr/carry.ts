@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
-import { Quaternion, Vector3 } from "three";
-import type { ModelSummary, NewEntity } from "../connection/messages";
-import { rotationOf } from "../document/scene_document";
+import type { Drop, ModelSummary, NewEntity } from "../connection/messages";
 import type { Parts } from "../parts";
 import { Signal } from "../signal";
-import { Ghost } from "../tools/ghost";
+import { Ghost, turned } from "../tools/ghost";
 import type { Hand, Hands, Side } from "./hand";
 import type { Desk } from "./ui/desk";
 
-const UP = new Vector3(0, 1, 0);
-/** Where the ray meets nothing the thing is shown and added so far away, m of the room. */
-const FREE_REACH = 1.5;
 /** A far ghost turns so fast at the stick's full deflection, rad/s. */
 const TURN_RATE = 2;
 /** A press that ends sooner took the thing in the hand for good: the next press puts it down. s */
@@ -21,8 +16,6 @@ export class Carry {
   readonly added = new Signal<{ model: ModelSummary | null; index: number }>();
   private readonly ghost: Ghost;
   private carried: { side: Side; entity: NewEntity; model: ModelSummary | null; sticky: boolean } | null = null;
-  private readonly point = new Vector3();
-  private readonly turn = new Quaternion();
   private spin = 0;
   private age = 0;
 
@@ -30,7 +23,6 @@ export class Carry {
     private readonly parts: Pick<Parts, "server" | "notices" | "selection" | "models" | "view">,
     private readonly hands: Hands,
     private readonly desk: Desk,
-    private readonly scale: () => number,
   ) {
     this.ghost = new Ghost(parts);
   }
@@ -60,11 +52,8 @@ export class Carry {
     const hand = this.hands.of(carried.side);
     this.spin -= hand.stickX * TURN_RATE * seconds;
     const overPanel = this.desk.distanceOf(carried.side) !== null;
-    const hit = overPanel ? null : this.parts.view.cast(hand.rayOrigin, hand.rayDirection);
-    this.ghost.turnTo(this.spin);
-    if (hit) this.ghost.lay(hit.point, hit.normal);
-    else if (overPanel) this.ghost.hide();
-    else this.ghost.lay(this.point.copy(hand.rayOrigin).addScaledVector(hand.rayDirection, FREE_REACH * this.scale()), UP);
+    if (overPanel) this.ghost.hide();
+    else this.ghost.moveAlong(dropOf(hand), this.spin);
     const ends = carried.sticky ? hand.trigger.pressed && this.age > CLICK : hand.trigger.released;
     if (ends) this.end(hand, overPanel);
   }
@@ -74,18 +63,20 @@ export class Carry {
     this.drop();
     // Let go over a panel it goes back into the catalogue.
     if (overPanel) return;
-    void this.add(carried.entity, carried.model, hand.rayOrigin.toArray(), hand.rayDirection.toArray());
+    void this.add(carried.entity, carried.model, dropOf(hand));
     hand.pulse(0.5, 25);
   }
 
-  private async add(entity: NewEntity, model: ModelSummary | null, origin: [number, number, number], direction: [number, number, number]): Promise<void> {
-    const given = new Quaternion(...rotationOf(entity.pose));
-    const rotation = this.turn.setFromAxisAngle(UP, this.spin).multiply(given).toArray() as [number, number, number, number];
+  private async add(entity: NewEntity, model: ModelSummary | null, drop: Drop): Promise<void> {
     // A plane is infinite: it has a fixed pose and lies on nothing.
-    const params = entity.shape?.type === "plane" ? { entity } : { entity: { ...entity, pose: { ...entity.pose, rotation } }, drop: { origin, direction } };
+    const params = entity.shape?.type === "plane" ? { entity } : { entity: turned(entity, this.spin), drop };
     const made = await this.parts.server.command("entity.add", params);
     if (!made) return;
     this.parts.selection.set([made.index]);
     this.added.emit({ model, index: made.index });
   }
+}
+
+function dropOf(hand: Hand): Drop {
+  return { origin: hand.rayOrigin.toArray(), direction: hand.rayDirection.toArray() };
 }

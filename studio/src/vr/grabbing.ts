@@ -3,7 +3,7 @@ import { Box3, Matrix4, Quaternion, Vector3 } from "three";
 import type { Parts } from "../parts";
 import { Signal } from "../signal";
 import { scaleEntities } from "../tools/gizmo";
-import { restOn } from "../tools/ghost";
+import { restOn } from "../tools/rest_on";
 import { type HeldPose, PoseDrag, presentPoses } from "../tools/poses";
 import type { Hand, Hands, Side } from "./hand";
 import { isMovable } from "./near";

@@ -77,7 +77,7 @@ export class VrSession {
     this.headset = { camera: stance.head, target: new Vector3(), distance: SHADOW_REACH };
     this.desk = new Desk(this.hands, stance, (side) => this.carry.side === side);
     this.grabbing = new Grabbing(parts, this.hands, stance);
-    this.carry = new Carry(parts, this.hands, this.desk, () => stance.scale);
+    this.carry = new Carry(parts, this.hands, this.desk);
     this.moving = new Moving(parts, this.hands, stance, (hand) => this.desk.isBusy(hand.side) || this.grabbing.held(hand.side) !== null || this.carry.side === hand.side);
     this.tape = new Tape(stance);
     this.models = new ModelPanel(parts, this.desk, this.carry);
