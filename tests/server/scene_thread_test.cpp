@@ -71,6 +71,30 @@ TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreReported) {
     EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
 }
 
+TEST_F(SceneThreadTest, WhatStrikesAHandIsToldToItsClientAloneAndALeavingClientLetsGo) {
+    const json box = {{"shape", {{"type", "box"}, {"half_extents", {0.1, 0.1, 0.1}}}},
+                      {"pose", {{"position", {0, 1, 0}}}},
+                      {"attributes", {{"mass", 1}}}};
+    const int index = run("entity.add", {{"entity", box}}).at("index");
+    run("simulation.listen", {{"impacts", true}}, 2);
+    run("simulation.step");
+    run("simulation.grab", {{"index", index}, {"point", {0, 1, 0}}, {"target", {0, 0, 0}}, {"hand", "left"}}, 3);
+    run("simulation.play");
+    const std::vector<json> felt = events_to(3, "hand");
+    ASSERT_FALSE(felt.empty());
+    EXPECT_EQ(felt[0].at("index"), index);
+    EXPECT_EQ(felt[0].at("hand"), "left");
+    EXPECT_FALSE(events_to(2, "impacts").empty());
+    {
+        const std::lock_guard lock(mutex_);
+        EXPECT_TRUE(directed_[1].empty());
+        EXPECT_EQ(directed_.size(), 3u) << "and nobody else";
+    }
+    thread_->forget(3);
+    EXPECT_EQ(error_of("simulation.move_grab", {{"target", {0, 2, 0}}, {"hand", "left"}}, 3),
+              "hand: \"left\" holds nothing: nothing is held, or it was removed");
+}
+
 // The network thread asks for these while the scene thread is busy; it must not wait.
 TEST_F(SceneThreadTest, TheDocumentArrivesAfterTheCurrentCommandAndTheCallDoesNotWait) {
     thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");

@@ -49,10 +49,11 @@ public:
     [[nodiscard]] virtual std::optional<double> drop_distance(double max_distance) const = 0;
     /// Hit of a ray (unit direction) with a surface that is no body in the world; empty if all points are bodies.
     [[nodiscard]] virtual std::optional<SurfaceHit> cast_ray(Vec3, Vec3, double) const { return std::nullopt; }
-    /// A body to pull at, at or near a place: one of the points, or a hand that is there until let_go(). Null where
-    /// there is none.
+    /// A body for one more hand to pull at, at or near a place: one of the points, or a body that holds some of them
+    /// until let_go(). Null where there is none.
     [[nodiscard]] virtual physics::BodyHandle hold(Vec3 position) = 0;
-    virtual void let_go() {}
+    /// Ends one hold() that returned this body.
+    virtual void let_go(physics::BodyHandle) {}
 
     /// Changes matter, masses, damping and other properties of the same points; positions and velocities stay. The
     /// definition is of their own kind and has the same number of points.

@@ -56,17 +56,16 @@ Result<void> SoftNodes::hang(std::vector<HeldNode> held) {
 }
 
 SoftNodes::~SoftNodes() {
-    let_go();
+    for (const Hand& hand : std::exchange(hands_, {})) remove(hand);
     // The deformable is in the world, so that the world does not refuse.
     (void)world_.destroy_deformable(handle_).ok();
 }
 
 Result<void> SoftNodes::set_definition(const PointsDefinition& definition) {
     const auto& taken = std::get<DeformableDefinition>(definition);
-    let_go();
     if (auto set = world_.set_deformable(handle_, taken); !set) return set;
     holds_ = {taken.attachments, taken.clamps, taken.ties};
-    return {};
+    return hands_.empty() ? Result<void>{} : apply_holds();
 }
 
 Result<void> SoftNodes::attach(Holds holds) {
@@ -87,21 +86,28 @@ Holds SoftNodes::holds() const {
     return there;
 }
 
-// A node in the hand is held by nothing else meanwhile; a clamped node stays clamped, to the hand.
-Result<void> SoftNodes::apply_holds() {
-    const auto is_in_hand = [this](const auto& hold) {
-        return std::ranges::find(held_, hold.node, &Attachment::node) != held_.end();
+SoftNodes::Hand* SoftNodes::hand_at(std::uint32_t node) {
+    const auto holds_it = [node](const Hand& hand) {
+        return std::ranges::find(hand.held, node, &Attachment::node) != hand.held.end();
     };
+    const auto found = std::ranges::find_if(hands_, holds_it);
+    return found == hands_.end() ? nullptr : &*found;
+}
+
+// A node in a hand is held by nothing else meanwhile; a clamped node stays clamped, to the hand.
+Result<void> SoftNodes::apply_holds() {
+    const auto is_in_hand = [this](const auto& hold) { return hand_at(hold.node) != nullptr; };
     Holds all = holds();
     for (Clamp& clamp : all.clamps) {
         const auto at = std::ranges::find(all.attachments, clamp.node, &Attachment::node);
-        if (!is_in_hand(clamp) || at == all.attachments.end()) continue;
+        const Hand* hand = hand_at(clamp.node);
+        if (!hand || at == all.attachments.end()) continue;
         const Vec3 direction = rotate(world_.pose(at->body).rotation, clamp.direction);
-        clamp.direction = rotate_inverse(world_.pose(hand_).rotation, direction);
+        clamp.direction = rotate_inverse(world_.pose(hand->body).rotation, direction);
     }
     std::erase_if(all.attachments, is_in_hand);
     std::erase_if(all.ties, is_in_hand);
-    all.attachments.insert(all.attachments.begin(), held_.begin(), held_.end());
+    for (const Hand& hand : hands_) all.attachments.insert(all.attachments.begin(), hand.held.begin(), hand.held.end());
     return world_.set_attachments(handle_, all.attachments, all.clamps, all.ties);
 }
 
@@ -140,8 +146,37 @@ std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, doubl
     return meet_rope(positions, definition().contact_radius, world_.broken_segments(handle_), ray);
 }
 
+Result<SoftNodes::Hand> SoftNodes::make_hand(Vec3 position) {
+    Hand hand;
+    const auto shape = world_.create_shape(physics::SphereShape{hand_radius});
+    if (!shape) return shape.error();
+    physics::BodyDefinition body;
+    body.shape = hand.shape = *shape;
+    body.position = position;
+    body.mass.mass = mass();
+    // Moment of inertia as of a ball of the thing's mass and half its size.
+    const double spread = 0.1 * mass() * length_squared(0.5 * bounds().size());
+    body.mass.inertia = Mat3::diagonal({spread, spread, spread});
+    body.gravity_factor = 0;
+    body.collision_group = body.collision_mask = 0;
+    body.allow_sleep = false;
+    body.user_data = definition().user_data;
+    const auto made = world_.create_body(body);
+    if (!made) {
+        (void)world_.destroy_shape(hand.shape).ok();
+        return made.error();
+    }
+    hand.body = *made;
+    return hand;
+}
+
+// The body and shape are in the world, so that the world does not refuse.
+void SoftNodes::remove(const Hand& hand) {
+    (void)world_.destroy_body(hand.body).ok();
+    (void)world_.destroy_shape(hand.shape).ok();
+}
+
 BodyHandle SoftNodes::hold(Vec3 position) {
-    let_go();
     const auto positions = world_.node_positions(handle_);
     const Vec3 size = bounds().size();
     double nearest = std::numeric_limits<double>::infinity();
@@ -149,43 +184,37 @@ BodyHandle SoftNodes::hold(Vec3 position) {
     const bool is_solid = std::holds_alternative<physics::SoftSolid>(definition().matter);
     const double reach = nearest + (is_solid ? hand_fraction : pinch_fraction) * std::max({size.x, size.y, size.z});
 
-    const auto shape = world_.create_shape(physics::SphereShape{hand_radius});
-    if (!shape) return {};
-    physics::BodyDefinition hand;
-    hand.shape = hand_shape_ = *shape;
-    hand.position = position;
-    hand.mass.mass = mass();
-    // Moment of inertia as of a ball of the thing's mass and half its size.
-    const double spread = 0.1 * hand.mass.mass.value_or(1) * length_squared(0.5 * size);
-    hand.mass.inertia = Mat3::diagonal({spread, spread, spread});
-    hand.gravity_factor = 0;
-    hand.collision_group = hand.collision_mask = 0;
-    hand.allow_sleep = false;
-    hand.user_data = definition().user_data;
-    const auto body = world_.create_body(hand);
-    if (body) {
-        hand_ = *body;
-        const auto& pinned = definition().pinned;
-        for (const std::uint32_t node : surface_.nodes()) {
-            if (length(positions[node] - position) > reach || std::ranges::find(pinned, node) != pinned.end()) continue;
-            held_.push_back({node, hand_, positions[node] - position});
-        }
-        if (apply_holds()) return hand_;
+    std::vector<std::uint32_t> free;
+    Hand* other = nullptr;
+    const auto& pinned = definition().pinned;
+    for (const std::uint32_t node : surface_.nodes()) {
+        if (length(positions[node] - position) > reach || std::ranges::find(pinned, node) != pinned.end()) continue;
+        if (Hand* holder = hand_at(node))
+            other = holder;
+        else
+            free.push_back(node);
     }
-    let_go();
+    if (free.empty() && other) {
+        ++other->holds;
+        return other->body;
+    }
+    Result<Hand> hand = make_hand(position);
+    if (!hand) return {};
+    for (const std::uint32_t node : free) hand->held.push_back({node, hand->body, positions[node] - position});
+    hands_.push_back(*hand);
+    if (apply_holds()) return hand->body;
+    let_go(hand->body);
     return {};
 }
 
-void SoftNodes::let_go() {
-    held_.clear();
-    if (!hand_.is_null()) {
-        // The nodes and bodies are in the world, so that the world does not refuse.
-        (void)apply_holds().ok();
-        (void)world_.destroy_body(hand_).ok();
-        hand_ = {};
-    }
-    if (!hand_shape_.is_null()) (void)world_.destroy_shape(hand_shape_).ok();
-    hand_shape_ = {};
+void SoftNodes::let_go(BodyHandle body) {
+    const auto found = std::ranges::find(hands_, body, &Hand::body);
+    if (found == hands_.end() || --found->holds > 0) return;
+    const Hand hand = std::move(*found);
+    hands_.erase(found);
+    // The nodes are in the world, so that it does not refuse.
+    (void)apply_holds().ok();
+    remove(hand);
 }
 
 Result<void> SoftNodes::move(const Transform& motion) {

@@ -45,17 +45,18 @@ public:
     [[nodiscard]] Bounds bounds() const override;
     [[nodiscard]] std::optional<double> drop_distance(double max_distance) const override;
     [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance) const override;
-    /// A hand that holds the nodes around the place: a body without weight that collides with nothing.
+    /// A hand that holds the nodes around the place: a body without weight that collides with nothing. Where other
+    /// hands hold all of them, the body of one of these.
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
-    void let_go() override;
+    void let_go(physics::BodyHandle hand) override;
     Result<void> set_definition(const PointsDefinition& definition) override;
     /// Initial arcs of a slack rope between the nodes that pins hold at these places, clear of bodies. Call only once,
     /// when everything around it is there.
     Result<void> hang(std::vector<HeldNode> held);
     /// Holds nodes by bodies and by other deformables, and a rope's directions at bodies or pins, in addition to the
-    /// holds of a hand.
+    /// holds of hands.
     Result<void> attach(Holds holds);
-    /// The holds whose bodies and deformables still exist; not those of a hand.
+    /// The holds whose bodies and deformables still exist; not those of hands.
     [[nodiscard]] Holds holds() const;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
@@ -66,17 +67,25 @@ public:
 private:
     SoftNodes(physics::World& world, physics::DeformableHandle handle, DeformableSurface surface)
         : world_(world), handle_(handle), surface_(std::move(surface)) {}
+    /// A body that holds nodes in a hand.
+    struct Hand {
+        physics::BodyHandle body;
+        physics::ShapeHandle shape;
+        std::vector<physics::Attachment> held;
+        int holds = 1;  ///< that were not let go
+    };
     Result<void> apply_holds();
     [[nodiscard]] bool is_blocked(Vec3 place) const;
+    [[nodiscard]] Hand* hand_at(std::uint32_t node);
+    [[nodiscard]] Result<Hand> make_hand(Vec3 position);
+    void remove(const Hand& hand);
 
     physics::World& world_;
     physics::DeformableHandle handle_;
     DeformableSurface surface_;
     Holds holds_;
-    std::vector<physics::Attachment> held_;  ///< by a hand
+    std::vector<Hand> hands_;
     bool has_hung_ = false;
-    physics::BodyHandle hand_;
-    physics::ShapeHandle hand_shape_;
 };
 
 /// Null for grains, for liquids, and for a null pointer.

@@ -69,6 +69,7 @@ Result<json> Session::execute(const std::string& command, const json& params, Cl
 }
 
 void Session::forget_client(ClientId client) {
+    state_->forget_hands(client);
     if (!state_->people.leave(client)) return;
     state_->tell({{"event", "members"}, {"members", state_->people.members()}});
     scene::follow_question(*state_, std::chrono::steady_clock::now());

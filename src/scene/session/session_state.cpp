@@ -46,7 +46,8 @@ Result<void> SessionState::rebuild_simulation() {
     if (!made.ok()) return made.error();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
-    grab.reset();
+    hands.clear();
+    impacts = {};
     step_times.clear();
     told_limits = 0;
     told_problems.clear();
@@ -61,12 +62,14 @@ void SessionState::set_play_state(PlayState state) {
 }
 
 void SessionState::step() {
-    if (grab) pull(simulation->world(), *grab);
+    hands.before_step(*simulation);
     simulation_is_pristine = false;
     simulation->step();
     step_times.push_back(std::chrono::steady_clock::now());
     if (step_times.size() > timed_steps) step_times.pop_front();
     tell_step();
+    tell_strikes();
+    tell_impacts();
     if (simulation->pause_requested()) set_play_state(PlayState::paused);
 }
 
@@ -260,7 +263,8 @@ Result<void> SessionState::open(Document opened, std::string opened_name, bool i
     if (is_unsaved) history.mark_unsaved();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
-    grab.reset();
+    hands.clear();
+    impacts = {};
     told_limits = 0;
     told_problems.clear();
     told_notes.clear();

@@ -15,11 +15,12 @@
 #include "scene/document/history.h"
 #include "scene/document/rebase.h"
 #include "scene/embody/entity_definitions.h"
+#include "scene/session/hands.h"
+#include "scene/session/impacts.h"
 #include "scene/session/journal.h"
 #include "scene/session/opening.h"
 #include "scene/session/people.h"
 #include "scene/session/session.h"
-#include "scene/simulation/grab.h"
 #include "scene/simulation/simulation.h"
 
 namespace embody::scene {
@@ -48,7 +49,10 @@ struct SessionState {
     std::unique_ptr<Simulation> simulation;
     bool simulation_is_pristine = true;  ///< made in one go from the present document
     PlayState play_state = PlayState::stopped;
-    std::optional<Grab> grab;
+    Hands hands;
+    std::set<ClientId> impact_listeners;  ///< clients that want to know what strikes what
+    StrongestImpacts impacts;             ///< that they were not told yet
+    Pace impact_pace{20};
     std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
     std::uint32_t told_limits = 0;                                 ///< of this run
     std::set<std::string> told_problems;
@@ -86,6 +90,8 @@ struct SessionState {
     Result<void> rebuild_simulation();
     void set_play_state(PlayState state);
     void step();
+    /// What the client holds and touches is left alone, and it is told of no impacts any more.
+    void forget_hands(ClientId who);
 
     void tell(nlohmann::json message);
     void tell_to(ClientId recipient, nlohmann::json message);  ///< tells one client only
@@ -125,6 +131,8 @@ private:
     /// Appends an edit to the journal.
     void keep(const nlohmann::json& changes);
     void tell_step();
+    void tell_strikes();
+    void tell_impacts();
     void tell_notes();
     void tell_waiting_models();
 };

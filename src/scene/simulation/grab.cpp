@@ -1,53 +1,160 @@
 // SPDX-License-Identifier: MIT
-// A point of a body is pulled as by a damped harmonic oscillator: a = ω² (target − p) − 2 ω v, critical damping. The
-// force is K⁻¹ a with K = 1/m − [r]× I⁻¹ [r]× (the inverse of the effective mass of the point; Baraff and Witkin,
-// 1998), so that a long lever arm gets no jerk.
+// A point p of a body follows a hand as a critically damped oscillator, evaluated at the end of the step h:
+//
+//   a = [ω² e + (2 ω + ω² h) (u − v)] / (1 + 2 ω h + ω² h²)      e = target − p, u and v the hand's and p's velocity
+//
+// The damper works on the difference of the velocities, so that nothing lags behind a hand that moves steadily, and
+// what is let go leaves with the hand's velocity. The hand's force and torque at the lever arm r:
+//
+//   F = K⁻¹ (a − g − ω × (ω × r) − (I⁻¹ T) × r)      K = 1/m − [r]× I⁻¹ [r]×
+//   T = I α − r × m (a − α × r − ω × (ω × r) − g)    where the hand turns it: α has the form of a
+//   T = −c (I + m (r² − r rᵀ)) ω                     where it hangs from the hand: its swing is damped
+//   |F| <= strength, weight included,  |T| <= strength · hand breadth
+//
+// K is the inverse of the effective mass (Baraff and Witkin, 1998), so that a long lever arm gets no jerk; F follows
+// from the T that is left within its limit, so that the point moves as wanted though the body does not turn as wanted.
+// Of n hands at one body each does the n-th part: the mean of such steps is no longer than the longest of them. Force
+// and torque act through the whole step, so that the turn in it is limited too.
 #include "scene/simulation/grab.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace embody::scene {
 
 namespace {
 
-constexpr double frequency = 12;          // ω, rad/s: reaches the target in a third of a second
-constexpr double spin_damping = 8;        // 1/s
-constexpr double max_acceleration = 400;  // m/s²: limits the pull towards a far target
+constexpr double path_time = 0.05;     // s, over which a hand's velocity is measured: some reports of a tracker
+constexpr double max_jump = 1;         // m in a step: beyond, the hand was put elsewhere
+constexpr double max_hand_speed = 20;  // m/s: of a fast throw; faster is an error of the tracker
+constexpr double max_hand_spin = 40;   // rad/s: of a quick turn of the wrist
+constexpr double closing_spin = 15;    // rad/s, at which something far from its target rotation turns there at most
+constexpr double max_turn = 0.5;       // rad a step: beyond, a lever arm at its beginning tells nothing of its end
+constexpr double hanging_damping = 8;  // 1/s, of the swing of what hangs from a hand
+/// Lever arm of the couple of forces that a palm exerts: the breadth of a hand, m (British men, 50th percentile:
+/// S. Pheasant, "Bodyspace", 2nd ed., 1996, table 2.5).
+constexpr double hand_breadth = 0.085;
+
+Vec3 limited(Vec3 v, double max_length) {
+    const double size = length(v);
+    return size > max_length ? v * (max_length / size) : v;
+}
+
+// Axis times angle of the shorter of the two turns.
+Vec3 rotation_vector(Quat q) {
+    const Vec3 axis = Vec3{q.x, q.y, q.z} * (q.w < 0 ? -1.0 : 1.0);
+    const double sine = length(axis);
+    return sine > 1e-12 ? axis * (2 * std::atan2(sine, std::fabs(q.w)) / sine) : 2.0 * axis;
+}
+
+// The held body in the step, world axes.
+struct Held {
+    double mass;    // kg
+    Mat3 inertia;   // about the centre of mass, kg m²
+    Vec3 arm;       // from the centre of mass to the held point, m
+    Vec3 velocity;  // of the held point, m/s
+    Vec3 spin;      // rad/s
+    Vec3 gravity;   // m/s²
+    double step;    // s
+};
+
+// Acceleration of the oscillator at the end of the step.
+Vec3 spring(double frequency, double h, Vec3 offset, Vec3 slip) {
+    const double stiffness = frequency * frequency, damping = 2 * frequency + stiffness * h;
+    return (stiffness * offset + damping * slip) / (1 + damping * h);
+}
+
+// The force that gives the point the acceleration, where the hands turn the body by this torque.
+Vec3 force_for(const Held& held, Vec3 wanted, Vec3 torque) {
+    const Mat3 r = skew(held.arm);
+    const Mat3 mobility = Mat3::identity() * (1 / held.mass) - r * inverse_or_zero(held.inertia) * r;
+    const Vec3 free =
+        held.gravity + cross(held.spin, cross(held.spin, held.arm)) + cross(solve(held.inertia, torque), held.arm);
+    return solve(mobility, wanted - free);
+}
+
+// The part of a torque that lets the body turn by no more than max_turn in the step, and no faster than it does if it
+// turns faster already: the largest s in 0 … 1 with |ω + s Δω| <= max.
+double turning_fraction(const Held& held, Vec3 torque) {
+    const Vec3 change = solve(held.inertia, torque) * held.step;
+    const double max_spin = std::max(max_turn / held.step, length(held.spin));
+    const double a = dot(change, change), b = dot(held.spin, change);
+    const double c = dot(held.spin, held.spin) - max_spin * max_spin;  // <= 0
+    if (!(a + 2 * b + c > 0)) return 1;
+    return std::clamp((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a, 0.0, 1.0);
+}
+
+// Torque that damps the swing of what hangs from the hand.
+Vec3 damping_torque(const Held& held) {
+    const Mat3 about_point =
+        held.inertia + (Mat3::identity() * dot(held.arm, held.arm) - outer(held.arm, held.arm)) * held.mass;
+    return about_point * held.spin * (-hanging_damping / (1 + hanging_damping * held.step));
+}
+
+// Torque with which the body turns as wanted while its point moves as wanted.
+Vec3 turning_torque(const Held& held, Vec3 wanted, Vec3 wanted_spin, double max_force) {
+    const Vec3 of_center =
+        wanted - cross(wanted_spin, held.arm) - cross(held.spin, cross(held.spin, held.arm)) - held.gravity;
+    return held.inertia * wanted_spin - cross(held.arm, limited(held.mass * of_center, max_force));
+}
 
 }  // namespace
 
-void pull(physics::World& world, const Grab& grab) {
+void HandPath::add(double time, Vec3 position, Quat rotation) {
+    if (!samples_.empty() && length(position - samples_.back().position) > max_jump) samples_.clear();
+    samples_.push_back({time, position, rotation});
+    while (samples_.size() > 2 && samples_.front().time < time - path_time * (1 + 1e-9)) samples_.pop_front();
+}
+
+Vec3 HandPath::velocity() const {
+    if (samples_.size() < 2) return {};
+    const double passed = samples_.back().time - samples_.front().time;
+    if (!(passed > 0)) return {};
+    return limited((samples_.back().position - samples_.front().position) / passed, max_hand_speed);
+}
+
+Vec3 HandPath::angular_velocity() const {
+    if (samples_.size() < 2) return {};
+    const double passed = samples_.back().time - samples_.front().time;
+    if (!(passed > 0)) return {};
+    const Vec3 turned = rotation_vector(samples_.back().rotation * conjugate(samples_.front().rotation));
+    return limited(turned / passed, max_hand_spin);
+}
+
+void pull(physics::World& world, const Grab& grab, int hands_at_body) {
     if (!world.contains(grab.body) || std::isinf(world.mass(grab.body))) return;
     const Transform pose = world.pose(grab.body);
-    const Vec3 center = world.center_of_mass(grab.body);
     const Vec3 point = transform_point(pose, grab.local_point);
-    const Vec3 arm = point - center;
-    const Vec3 spin = world.angular_velocity(grab.body);
-    const Vec3 velocity = world.linear_velocity(grab.body) + cross(spin, arm);
+    Held held{.mass = world.mass(grab.body),
+              .inertia = rotate_tensor(pose.rotation, world.inertia(grab.body)),
+              .arm = point - world.center_of_mass(grab.body),
+              .velocity = {},
+              .spin = world.angular_velocity(grab.body),
+              .gravity = world.settings().gravity * world.body(grab.body)->gravity_factor,
+              .step = world.settings().time_step};
+    held.velocity = world.linear_velocity(grab.body) + cross(held.spin, held.arm);
 
-    // The acceleration by the spring at the end of the step.
-    const double h = world.settings().time_step;
-    const double stiffness = frequency * frequency;
-    const double damping = 2 * frequency + stiffness * h;
-    Vec3 wanted = (stiffness * (grab.target - point) - damping * velocity) / (1 + damping * h);
-    const double size = length(wanted);
-    if (size > max_acceleration) wanted *= max_acceleration / size;
-
-    // The force with that acceleration on this body at this lever arm.
-    const double mass = world.mass(grab.body);
-    const Mat3 inertia = rotate_tensor(pose.rotation, world.inertia(grab.body));
-    const Mat3 r = skew(arm);
-    const Mat3 mobility = Mat3::identity() * (1 / mass) - r * inverse_or_zero(inertia) * r;
-    const Mat3 held = inertia + (Mat3::identity() * dot(arm, arm) - outer(arm, arm)) * mass;
-    const Vec3 torque = held * spin * -spin_damping;
-    const Vec3 gravity = world.settings().gravity * world.body(grab.body)->gravity_factor;
-    const Vec3 free = gravity + cross(spin, cross(spin, arm)) + cross(solve(inertia, torque), arm);
-    const Vec3 force = solve(mobility, wanted - free);
+    // What all n hands would do if they were as this one.
+    const double w = grab.frequency, h = held.step, strength = hands_at_body * grab.strength;
+    const Vec3 offset = limited(grab.target - point, 2 * grab.closing_speed / w);
+    const Vec3 wanted = spring(w, h, offset, grab.velocity - held.velocity);
+    Vec3 torque;
+    if (grab.rotation) {
+        const Vec3 angle = limited(rotation_vector(*grab.rotation * conjugate(pose.rotation)), 2 * closing_spin / w);
+        torque = turning_torque(held, wanted, spring(w, h, angle, grab.spin - held.spin), strength);
+    } else {
+        torque = damping_torque(held);
+    }
+    torque = limited(torque, strength * hand_breadth);
+    Vec3 force = limited(force_for(held, wanted, torque), strength);
+    torque += cross(held.arm, force);
+    torque *= turning_fraction(held, torque) / hands_at_body;
+    force *= 1.0 / hands_at_body;
     if (!is_finite(force) || !is_finite(torque)) return;
 
     // The handle was checked, the numbers are finite: the world refuses nothing here.
     (void)world.wake(grab.body).ok();
-    (void)world.apply_force(grab.body, force, point).ok();
+    (void)world.apply_force(grab.body, force).ok();
     (void)world.apply_angular_impulse(grab.body, torque * h).ok();
 }
 

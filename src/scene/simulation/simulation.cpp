@@ -21,11 +21,12 @@ using physics::JointHandle;
 
 namespace {
 
-// Contacts between grains of one entity are left out.
+// Contacts between grains of one entity are left out, and those of hands, which are no entity.
 std::vector<physics::ContactEvent> contacts_between_entities(const physics::World& world) {
     std::vector<physics::ContactEvent> contacts;
     for (const physics::ContactEvent& event : world.contact_events())
-        if (event.user_data_a != event.user_data_b) contacts.push_back(event);
+        if (event.user_data_a != event.user_data_b && event.user_data_a != 0 && event.user_data_b != 0)
+            contacts.push_back(event);
     return contacts;
 }
 
@@ -145,18 +146,6 @@ BodyHandle Simulation::body(EntityIndex entity) const {
     return found ? found->body : BodyHandle{};
 }
 
-BodyHandle Simulation::hold(EntityIndex entity, Vec3 position) {
-    let_go();
-    const LiveEntity* found = state_->find(entity);
-    if (!found) return {};
-    return found->points ? found->points->hold(position) : found->body;
-}
-
-void Simulation::let_go() {
-    for (auto& [index, entity] : state_->live)
-        if (entity.points) entity.points->let_go();
-}
-
 std::vector<std::string> Simulation::notes() const {
     // Things of one name have one message, at the place of the first of them.
     std::vector<std::pair<std::string, int>> told;
@@ -196,13 +185,15 @@ Bounds Simulation::bounds(EntityIndex entity) const {
 
 std::optional<double> Simulation::drop_distance(EntityIndex entity, double max_distance) const {
     const MovingPoints* its = points(entity);
-    return its ? its->drop_distance(max_distance) : state_->world->drop_distance(body(entity), max_distance);
+    if (its) return its->drop_distance(max_distance);
+    return state_->world->drop_distance(body(entity), max_distance,
+                                        [this](BodyHandle other) { return state_->hand(other) != nullptr; });
 }
 
 std::optional<Simulation::RayHit> Simulation::cast_ray(Vec3 origin, Vec3 direction, double max_distance,
                                                        EntityIndex ignore) const {
     std::optional<RayHit> nearest;
-    if (const auto hit = state_->world->cast_ray(origin, direction, max_distance, body(ignore)))
+    if (const auto hit = state_->cast_ray(origin, direction, max_distance, body(ignore)))
         nearest = RayHit{entity(hit->body), hit->position, hit->normal, hit->distance};
     for (const auto& [index, live] : state_->live) {
         if (!live.points || index == ignore) continue;

@@ -74,10 +74,17 @@ public:
     [[nodiscard]] bool contains(EntityIndex entity) const;
     /// Null for an entity that is not (any more) in the world, and for one with points.
     [[nodiscard]] physics::BodyHandle body(EntityIndex entity) const;
-    /// A body to pull it at, at or near a place in the world: its own, that of one of its points, or a hand that is
-    /// there until let_go(). May be null.
-    [[nodiscard]] physics::BodyHandle hold(EntityIndex entity, Vec3 position);
-    void let_go();
+    /// A body for one more hand to pull it at, at or near a place in the world: its own, that of one of its points, or
+    /// one that holds some of these until let_go(). An error where no hand can hold it.
+    [[nodiscard]] Result<physics::BodyHandle> hold(EntityIndex entity, Vec3 position);
+    /// Ends one hold(); nothing where the body is gone.
+    void let_go(EntityIndex entity, physics::BodyHandle held);
+    /// A ball with the weightless mass of a forearm that pushes things; it is no entity, and no ray meets it. Radius in
+    /// m.
+    Result<physics::BodyHandle> add_hand(Vec3 position, double radius);
+    void remove_hand(physics::BodyHandle hand);
+    /// Whether a ball at the place would touch the entity; of points that are no bodies, whether it is near one.
+    [[nodiscard]] bool is_touched(EntityIndex entity, Vec3 place, double radius) const;
     /// Entities that are not simulated as their kind, and why: "Towel is simulated as rigid, because …".
     [[nodiscard]] std::vector<std::string> notes() const;
     /// The points of an entity that is not one body. Null for others; valid until an edit.

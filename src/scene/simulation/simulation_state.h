@@ -44,8 +44,15 @@ struct TimedForce {
     double until = 0;
 };
 
+/// A hand's ball in the world.
+struct HandBall {
+    physics::BodyHandle body;
+    physics::ShapeHandle shape;
+    double radius = 0;  ///< m
+};
+
 /// State of a simulation. Entities are made and changed in simulation_entities.cpp, their connections in
-/// simulation_holds.cpp, effects of actions in simulation_effects.cpp.
+/// simulation_holds.cpp, hands in simulation_hands.cpp, effects of actions in simulation_effects.cpp.
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
           std::shared_ptr<FormCache> forms)
@@ -74,6 +81,7 @@ struct Simulation::State {
     std::set<EntityIndex> remarkable;                    ///< entities with a note, and liquids
     std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these exist
     std::vector<TimedForce> timed_forces;
+    std::vector<HandBall> hands;
     std::vector<EntityIndex> spawned, despawned;
     EntityIndex next_spawned = last_document_index + 1;
     std::unique_ptr<ActionRunner> actions;
@@ -114,6 +122,11 @@ struct Simulation::State {
     [[nodiscard]] bool is_held_as_body(EntityIndex index, attributes::PhysicalKind kind) const;
     /// Before entities are made: finds those that joints and pins of the document need as one body.
     void find_bodies(const Document& document);
+    /// Null where the body is no hand's.
+    [[nodiscard]] const HandBall* hand(physics::BodyHandle body) const;
+    /// World::cast_ray() past hands.
+    [[nodiscard]] std::optional<physics::RayHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance,
+                                                          physics::BodyHandle ignore) const;
     /// Connects its pins to the present places on other entities.
     Result<void> fasten(const LiveEntity& entity);
     /// Updates ties to an entity that has changed, whose pins were `before`. `is_new`: it was made again.

@@ -170,7 +170,7 @@ TEST(Grains, ChangeWhileTheyRun) {
     changed.attributes["friction_angle"] = 20.0;
     ASSERT_TRUE(simulation->update(changed, true).ok());
     EXPECT_EQ(points_of(*simulation), before);
-    const physics::BodyHandle grain = simulation->hold(sand, before.front());
+    const physics::BodyHandle grain = simulation->hold(sand, before.front()).value();
     EXPECT_LT(simulation->world().body(grain)->material.friction_dynamic, 0.6);
 
     // Another size: filled again.

@@ -232,7 +232,7 @@ TEST_F(SessionTest, AGrabPullsAPointToItsTargetAndHoldsIt) {
         error_of("simulation.grab", {{"index", box}, {"point", {0, 0, 0}}, {"target", {0, 0, 0}}}).find("stopped"),
         std::string::npos);
     run("simulation.play");
-    run("simulation.grab", {{"index", box}, {"point", {0.25, 0.5, 0.25}}, {"target", {1, 2, 0}}});
+    run("simulation.grab", {{"index", box}, {"point", {0.25, 0.5, 0.25}}, {"target", {1, 2, 0}}, {"strength", 1e4}});
     double highest = 0;
     for (int i = 0; i < 180; ++i) {
         session_->step();

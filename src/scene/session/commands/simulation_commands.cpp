@@ -10,6 +10,10 @@ using nlohmann::json;
 namespace {
 
 constexpr std::uint32_t max_steps = 100'000;  // of one command: more would take minutes
+constexpr std::size_t max_hand_name = 32;     // bytes
+/// N: the order of what a person lifts with one arm.
+constexpr double usual_strength = 400, min_strength = 1, max_strength = 1e6;
+constexpr double min_touch_radius = 0.01, max_touch_radius = 0.3;  // m: a fingertip … a large paddle
 
 Result<void> read_nothing(const json& params) {
     std::optional<Error> error;
@@ -27,6 +31,7 @@ Result<void> leave_stop(SessionState& state) {
 Result<json> play(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
     if (Result<void> ready = leave_stop(state); !ready.ok()) return ready.error();
+    if (state.play_state != PlayState::playing) state.hands.rest();
     state.set_play_state(PlayState::playing);
     return json::object();
 }
@@ -78,38 +83,93 @@ Result<json> keep(SessionState& state, const json& params) {
     return json::object();
 }
 
+// The client's hand that the command is about.
+HandName read_hand(FieldReader& reader, const SessionState& state) {
+    HandName hand{state.client, "mouse"};
+    if (reader.word("hand", hand.name) && hand.name.size() > max_hand_name)
+        reader.refuse("hand", "is longer than " + std::to_string(max_hand_name) + " bytes", "such as \"left\"");
+    return hand;
+}
+
+std::optional<Quat> read_rotation(FieldReader& reader) {
+    Quat rotation;
+    if (!reader.rotation("rotation", rotation)) return std::nullopt;
+    return normalized(rotation);
+}
+
+Error stopped(const char* command, const char* remedy) { return {command, "the simulation is stopped", remedy}; }
+
 Result<json> grab(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
     EntityIndex index = 0;
-    Vec3 point, target;
+    Vec3 point;
+    HandPlace place;
+    double strength = usual_strength;
     need_index(reader, "index", index);
     need_vector(reader, "point", "the point to hold, in the world", point);
-    need_vector(reader, "target", "where to pull it, in the world", target);
+    need_vector(reader, "target", "where to pull it, in the world", place.position);
+    place.rotation = read_rotation(reader);
+    reader.number("strength", strength, {min_strength, max_strength});
+    const HandName hand = read_hand(reader, state);
     if (!reader.finish()) return *error;
     if (state.play_state == PlayState::stopped)
-        return Error{"simulation.grab", "the simulation is stopped", "play first; to move things use entity.transform"};
-    const physics::BodyHandle body = state.simulation->hold(index, point);
-    if (body.is_null()) return Error{"index", "entity " + std::to_string(index) + " is not in the world"};
-    state.grab = Grab{body, inverse_transform_point(state.simulation->world().pose(body), point), target};
-    return json::object();
+        return stopped("simulation.grab", "play first; to move things use entity.transform");
+    if (Result<void> held = state.hands.grab(*state.simulation, hand, index, point, strength); !held.ok())
+        return held.error();
+    return done(state.hands.move(*state.simulation, hand, place));
 }
 
 Result<json> move_grab(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
-    Vec3 target;
-    need_vector(reader, "target", "where to pull it, in the world", target);
+    HandPlace place;
+    need_vector(reader, "target", "where to pull it, in the world", place.position);
+    place.rotation = read_rotation(reader);
+    const HandName hand = read_hand(reader, state);
     if (!reader.finish()) return *error;
-    if (!state.grab) return Error{"simulation.move_grab", "nothing is held", "simulation.grab first"};
-    state.grab->target = target;
-    return json::object();
+    return done(state.hands.move(*state.simulation, hand, place));
 }
 
 Result<json> release(SessionState& state, const json& params) {
-    if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
-    state.grab.reset();
-    state.simulation->let_go();
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    const HandName hand = read_hand(reader, state);
+    if (!reader.finish()) return *error;
+    state.hands.release(*state.simulation, hand);
+    return json::object();
+}
+
+Result<json> touch(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    Hands::Ball ball;
+    std::optional<Vec3> position;
+    reader.vector("position", position);
+    ball.place.rotation = read_rotation(reader);
+    reader.number("radius", ball.radius, {min_touch_radius, max_touch_radius});
+    const HandName hand = read_hand(reader, state);
+    if (!reader.finish()) return *error;
+    if (!position) {
+        state.hands.stop_touching(*state.simulation, hand);
+        return json::object();
+    }
+    if (state.play_state == PlayState::stopped)
+        return stopped("simulation.touch", "play first: what is stopped cannot be pushed");
+    ball.place.position = *position;
+    return done(state.hands.touch(*state.simulation, hand, ball));
+}
+
+Result<json> listen(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    bool impacts = false;
+    if (reader.need("impacts", "true: tell of impacts from now on; false: no more")) reader.truth("impacts", impacts);
+    if (!reader.finish()) return *error;
+    if (impacts)
+        state.impact_listeners.insert(state.client);
+    else
+        state.impact_listeners.erase(state.client);
     return json::object();
 }
 
@@ -119,7 +179,8 @@ std::span<const Command> simulation_commands() {
     static constexpr Command commands[] = {{"simulation.play", play},           {"simulation.pause", pause},
                                            {"simulation.step", step},           {"simulation.reset", reset},
                                            {"simulation.keep", keep},           {"simulation.grab", grab},
-                                           {"simulation.move_grab", move_grab}, {"simulation.release", release}};
+                                           {"simulation.move_grab", move_grab}, {"simulation.release", release},
+                                           {"simulation.touch", touch},         {"simulation.listen", listen}};
     return commands;
 }
 
