@@ -9,6 +9,12 @@ const LOCK_WAIT_MS = 1500;
 /** The person of this tab; it is held until the page is left. */
 export async function thisPerson(): Promise<string> {
   const ofTab = read("sessionStorage");
+  // A page that is loaded again is surely the same; its lock comes when the page before has let go, which may take long.
+  const isReload = (performance.getEntriesByType("navigation")[0] as PerformanceNavigationTiming | undefined)?.type === "reload";
+  if (ofTab && isReload) {
+    void claim(ofTab, null);
+    return ofTab;
+  }
   if (ofTab && (await claim(ofTab, LOCK_WAIT_MS))) return keep(ofTab);
   const ofBrowser = read("localStorage");
   if (ofBrowser && navigator.locks && (await claim(ofBrowser, 0))) return keep(ofBrowser);
@@ -25,14 +31,14 @@ function keep(person: string): string {
 
 /**
  * Takes the person for this tab; false where another tab of the browser has it, such as the one that this was duplicated from.
- * Browsers have these locks on https and on this machine; elsewhere the storage of the tab alone decides.
+ * Browsers have these locks on https and on this machine; elsewhere the storage of the tab alone decides. Waits so long where another one has it; null: as long as it takes.
  */
-function claim(person: string, waitMs: number): Promise<boolean> {
+function claim(person: string, waitMs: number | null): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
   return new Promise((resolve) => {
     const given = new AbortController();
-    const timer = setTimeout(() => given.abort(), waitMs);
-    const options: LockOptions = waitMs > 0 ? { signal: given.signal } : { ifAvailable: true };
+    const timer = waitMs === null ? 0 : setTimeout(() => given.abort(), waitMs);
+    const options: LockOptions = waitMs === 0 ? { ifAvailable: true } : { signal: given.signal };
     const held = navigator.locks.request(`${PLACE} ${person}`, options, (lock) => {
       clearTimeout(timer);
       resolve(lock !== null);

@@ -86,9 +86,8 @@ export async function openScenes(parts: Opener): Promise<void> {
     };
     const recovered = answer.scenes.some((scene) => scene.kind === "recovery");
     body.replaceChildren(
-      list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."),
+      element("div", {}, list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."), recovered ? list("Recovered, never saved", "recovery", "") : null),
       list("Examples", "demo", "No examples found."),
-      ...(recovered ? [list("Recovered (kept automatically, never saved)", "recovery", "")] : []),
     );
     return true;
   };
