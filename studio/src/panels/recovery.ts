@@ -44,7 +44,7 @@ export function offerRecoveries(parts: Pick<Parts, "preferences" | "server">, fo
     element("p", { class: "note" }, "What you keep for later is under “Recovered” in “Open a scene”."),
     dialogButtons(element("button", { "data-testid": "recovery-later", onclick: () => dialog.close() }, "Keep for later")),
   );
-  // Names of what is gone are forgotten.
-  dialog.addEventListener("close", () => parts.preferences.set("recoveriesKnown", found.map(({ name }) => name)));
+  // Remembered at once: the page may be left before the dialog tells that it was closed. Names of what is gone are forgotten.
+  parts.preferences.set("recoveriesKnown", found.map(({ name }) => name));
   list.querySelector("button")?.focus();
 }
