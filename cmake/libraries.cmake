@@ -11,8 +11,10 @@ find_package(meshoptimizer REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(PNG REQUIRED)
+find_package(OpenSSL REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
+pkg_check_modules(qrencode REQUIRED IMPORTED_TARGET libqrencode)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
 find_package(embree 3 REQUIRED)
 # VRML only; without it a .wrl is refused with the name of the package.
@@ -44,4 +46,5 @@ add_library(embody_catalog_libraries INTERFACE)
 target_link_libraries(embody_catalog_libraries INTERFACE nlohmann_json::nlohmann_json Threads::Threads)
 
 add_library(embody_server_libraries INTERFACE)
-target_link_libraries(embody_server_libraries INTERFACE Boost::headers nlohmann_json::nlohmann_json Threads::Threads)
+target_link_libraries(embody_server_libraries INTERFACE Boost::headers OpenSSL::SSL OpenSSL::Crypto
+                      nlohmann_json::nlohmann_json Threads::Threads)

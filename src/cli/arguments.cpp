@@ -110,6 +110,14 @@ private:
                           "Port; 0: any free one (default 8420, or a free one where it is taken)");
         c.app->add_option("--scene", c.into->scene,
                           "Scene to open: a file, or the name of a saved or demo scene (default furnished_room)");
+        c.app->add_flag("--tls", c.into->tls,
+                        "Serve by https, which headsets need; makes a certificate where none is named");
+        auto* certificate =
+            c.app->add_option("--certificate", c.into->certificate, "Certificate for https, a PEM file");
+        auto* key = c.app->add_option("--key", c.into->key, "Its private key, a PEM file");
+        certificate->needs(key);
+        key->needs(certificate);
+        c.app->add_flag("--qr", c.into->qr, "Draw the address as a QR code, where the output is no terminal, too");
         c.app->add_option("--fill", c.into->fill,
                           "Files, folders and catalogues to import in the background, while the Studio is used");
         c.app->add_option("--fill-list", c.into->fill_list,

@@ -16,8 +16,11 @@ namespace embody::cli {
 struct ServeArguments {
     std::filesystem::path database;
     std::string address = "127.0.0.1";
-    std::optional<unsigned short> port;       ///< open: 8420, or a free port where 8420 is in use
-    std::optional<std::string> scene;         ///< none: the furnished room
+    std::optional<unsigned short> port;  ///< open: 8420, or a free port where 8420 is in use
+    std::optional<std::string> scene;    ///< none: the furnished room
+    bool tls = false;
+    std::filesystem::path certificate, key;   ///< empty: Embody's own
+    bool qr = false;                          ///< draw the QR code wherever the output goes
     std::vector<std::filesystem::path> fill;  ///< catalogues to import in the background
     std::filesystem::path fill_list;          ///< file or pipe that names more of them
     std::filesystem::path fill_mark;          ///< file to write when all is in the database

@@ -52,7 +52,7 @@ void print_row(const StructureBuilder& builder, const StructureResult& result) {
     std::fflush(stdout);
 }
 
-void print_head() {
+void print_stability_head() {
     print_text(
         "Without sleeping: the time it must stand, how far the pieces sank and went sideways, kinetic energy in\n"
         "the last second; with sleeping: when all slept. The last column says which goal is missed.\n\n");
@@ -68,7 +68,7 @@ int run_stability(const BenchArguments& arguments) {
     if (!arguments.scene.empty() && scenes::find_structure_builder(arguments.scene) == nullptr) {
         return report({"--scene " + arguments.scene, "there is no such structure", "embody bench stability runs all"});
     }
-    if (!arguments.json) print_head();
+    if (!arguments.json) print_stability_head();
     nlohmann::json rows = nlohmann::json::array();
     bool all_right = true;
     for (const StructureBuilder& builder : scenes::structure_builders()) {

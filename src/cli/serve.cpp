@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <spawn.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include "cli/commands.h"
 #include "cli/fill_line.h"
 #include "cli/locations.h"
 #include "cli/output.h"
+#include "cli/qr_code.h"
+#include "server/certificate.h"
+#include "server/lan_addresses.h"
 #include "server/server.h"
 
 namespace embody::cli {
@@ -28,6 +33,45 @@ void open_in_browser(const std::string& url) {
         print_error("No program to open a browser was found; open the address above by hand.\n");
 }
 
+/// The files named by the user, or those that Embody makes for the names and addresses of this machine; none without
+/// TLS.
+Result<std::optional<server::CertificateFiles>> certificate_of(const ServeArguments& arguments) {
+    using Files = std::optional<server::CertificateFiles>;
+    if (!arguments.certificate.empty()) return Files({arguments.certificate, arguments.key});
+    if (!arguments.tls) return Files();
+    std::vector<std::string> names = {"localhost", "127.0.0.1", "::1"};
+    for (const std::string& address : server::lan_addresses(true)) names.push_back(address);
+    if (const std::string name = server::host_name(); !name.empty() && name != "localhost") {
+        names.push_back(name);
+        if (name.find('.') == std::string::npos) names.push_back(name + ".local");
+    }
+    const auto folder = catalog::Catalog::default_file().parent_path() / "tls";
+    auto files = server::own_certificate(folder, names, std::time(nullptr));
+    return files ? Result<Files>(Files(*files)) : Result<Files>(files.error());
+}
+
+/// Where the Studio is: here, and for other machines and headsets.
+void print_addresses(const server::Server& server, const ServeArguments& arguments,
+                     const server::ServerOptions& options) {
+    print_text("Studio: {}\n", server.url());
+    const std::vector<std::string> others = server.urls_for_others();
+    if (!others.empty()) print_text("On other machines and headsets of this network:\n");
+    for (const std::string& url : others) print_text("    {}\n", url);
+    const bool is_terminal = isatty(STDOUT_FILENO) != 0;
+    if (arguments.qr || (is_terminal && !others.empty())) {
+        const QrColors colors = is_terminal ? QrColors::dark_on_light : QrColors::of_the_terminal;
+        write_text(stdout, qr_code(others.empty() ? server.url() : others.front(), colors));
+    }
+    if (options.certificate && arguments.certificate.empty()) {
+        const auto print = server::fingerprint(options.certificate->certificate);
+        print_text("The certificate is Embody's own, so that a browser warns once. Its SHA-256 fingerprint:\n    {}\n",
+                   print ? *print : print.error().message());
+    }
+    if (!options.certificate && !others.empty()) print_text("Headsets offer VR only by https: add --tls.\n");
+    print_text("Stop with Ctrl+C.\n");
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int run_serve(const ServeArguments& arguments) {
@@ -41,6 +85,9 @@ int run_serve(const ServeArguments& arguments) {
     options.scene.session.saved_scenes = saved_scenes_folder();
     options.scene.session.demo_scenes = data_folder() / "scenes";
     FillLine fill_line;
+    auto certificate = certificate_of(arguments);
+    if (!certificate) return report(certificate.error());
+    options.certificate = std::move(*certificate);
     options.fill.catalogues = arguments.fill;
     options.fill.list = arguments.fill_list;
     options.fill.mark = arguments.fill_mark;
@@ -57,9 +104,7 @@ int run_serve(const ServeArguments& arguments) {
         if (server) print_error("embody: starting with an empty scene: {}\n", no_scene.message());
     }
     if (!server) return report(server.error());
-    print_text("Studio: {}\n", (*server)->url());
-    print_text("Stop with Ctrl+C.\n");
-    std::fflush(stdout);
+    print_addresses(**server, arguments, options);
     if (arguments.open_browser) open_in_browser((*server)->url());
     (*server)->run();
     if ((*server)->end_within(longest_end)) return exit_ok;

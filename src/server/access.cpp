@@ -42,10 +42,10 @@ std::string cookie_value(std::string_view cookies, std::string_view name) {
 
 /// Whether a page of another site made the browser ask. Origin tells it for WebSocket upgrades, POSTs and requests of
 /// scripts; Sec-Fetch-Site for pictures, too. Programs that are no browser send neither.
-bool is_foreign(const HttpRequest& request) {
-    if (!request.origin.empty() && request.origin != "http://" + request.host &&
-        request.origin != "https://" + request.host)
-        return true;
+bool is_foreign(const AccessRules& rules, const HttpRequest& request) {
+    // Without TLS of its own the server may stand behind another that has it.
+    const bool is_plain_page = !rules.tls && request.origin == "http://" + request.host;
+    if (!request.origin.empty() && !is_plain_page && request.origin != "https://" + request.host) return true;
     return !request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none";
 }
 
@@ -60,7 +60,7 @@ Access check_access(const AccessRules& rules, const HttpRequest& request, bool i
     // A page of another site that resolves its own name to 127.0.0.1 still sends that name as Host.
     if (rules.loopback_only && !request.host.empty() && !names_loopback(request.host))
         return {false, "this server answers only to localhost and 127.0.0.1, not to \"" + request.host + "\""};
-    if (is_foreign(request) && !(is_page && follows_link(request))) {
+    if (is_foreign(rules, request) && !(is_page && follows_link(request))) {
         const std::string site = request.origin.empty() ? request.fetch_site : request.origin;
         return {false, "pages of another site (" + site + ") may not use this server"};
     }
@@ -69,6 +69,16 @@ Access check_access(const AccessRules& rules, const HttpRequest& request, bool i
         equal_secrets(rules.token, cookie_value(request.cookie, token_cookie)))
         return {true, {}};
     return {false, "the address must end with ?token=… as printed when the server started"};
+}
+
+HttpResponse answer_without_tls(const HttpRequest& request) {
+    const bool is_read = request.method == "GET" || request.method == "HEAD";
+    if (!is_read || request.host.empty())
+        return error_response(403, request.target, "this server answers only by https", "ask at https://…");
+    // Not for ever: the next server at this address may be one without TLS.
+    HttpResponse answer = error_response(307, request.target, "this server answers only by https");
+    answer.headers["Location"] = "https://" + request.host + request.target;
+    return answer;
 }
 
 }  // namespace embody::server

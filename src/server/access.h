@@ -13,6 +13,7 @@ struct AccessRules {
     bool loopback_only = true;
     unsigned short port = 0;
     std::string token;  ///< never empty where loopback_only is false
+    bool tls = false;   ///< pages of this server come by https only
 };
 
 /// Whether the request may be answered; where not, the reason for the user.
@@ -23,6 +24,9 @@ struct Access {
 /// `is_page`: the request is for the Studio's own page, to which pages of other sites may link; everything else is only
 /// for that page and for programs that are no browser.
 Access check_access(const AccessRules& rules, const HttpRequest& request, bool is_page);
+
+/// What a server with TLS answers to plain HTTP: the way to the same page by https.
+HttpResponse answer_without_tls(const HttpRequest& request);
 
 /// Name of the cookie that keeps the token after the first page load.
 inline constexpr const char* token_cookie = "embody_token";

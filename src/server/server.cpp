@@ -8,6 +8,7 @@
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/ssl.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -25,8 +26,10 @@
 
 #include "foundation/printable.h"
 #include "server/access.h"
+#include "server/certificate.h"
 #include "server/connection_book.h"
 #include "server/import_request.h"
+#include "server/lan_addresses.h"
 #include "server/library_fill.h"
 #include "server/routes.h"
 #include "server/upload_store.h"
@@ -82,6 +85,7 @@ struct Shared {
     std::size_t command_bytes = 0;
     asio::io_context io;
     AccessRules access;
+    std::unique_ptr<asio::ssl::context> tls;  ///< null: plain HTTP
     std::unique_ptr<SceneThread> scene;
     std::shared_ptr<UploadStore> uploads;
     std::unique_ptr<Routes> routes;
@@ -102,14 +106,74 @@ void report_failure(const std::exception& thrown) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------
+// A TCP connection with or without TLS: one type, so that Beast's HTTP and WebSocket are compiled once for both.
+
+class Stream {
+public:
+    using executor_type = beast::tcp_stream::executor_type;
+    using next_layer_type = beast::tcp_stream;  ///< by this name Beast finds the layer that has time limits
+
+    explicit Stream(tcp::socket&& socket) : layers_(std::make_unique<Layers>(std::move(socket))) {}
+
+    executor_type get_executor() { return layers_->plain.get_executor(); }
+    beast::tcp_stream& next_layer() { return layers_->plain; }
+    [[nodiscard]] const beast::tcp_stream& next_layer() const { return layers_->plain; }
+
+    /// What was read before is the beginning of the client's part.
+    template <class Buffers, class Handler>
+    void begin_tls(asio::ssl::context& context, const Buffers& read_before, Handler&& handler) {
+        layers_->tls.emplace(layers_->plain, context);
+        layers_->tls->async_handshake(asio::ssl::stream_base::server, read_before, std::forward<Handler>(handler));
+    }
+    [[nodiscard]] bool has_tls() const { return layers_->tls.has_value(); }
+
+    template <class Buffers, class Token>
+    auto async_read_some(const Buffers& buffers, Token&& token) {
+        return asio::async_initiate<Token, void(error_code, std::size_t)>(
+            [layers = layers_.get()](auto handler, const Buffers& into) {
+                if (layers->tls)
+                    layers->tls->async_read_some(into, std::move(handler));
+                else
+                    layers->plain.async_read_some(into, std::move(handler));
+            },
+            token, buffers);
+    }
+    template <class Buffers, class Token>
+    auto async_write_some(const Buffers& buffers, Token&& token) {
+        return asio::async_initiate<Token, void(error_code, std::size_t)>(
+            [layers = layers_.get()](auto handler, const Buffers& from) {
+                if (layers->tls)
+                    layers->tls->async_write_some(from, std::move(handler));
+                else
+                    layers->plain.async_write_some(from, std::move(handler));
+            },
+            token, buffers);
+    }
+
+private:
+    struct Layers {
+        explicit Layers(tcp::socket&& socket) : plain(std::move(socket)) {}
+        beast::tcp_stream plain;
+        std::optional<asio::ssl::stream<beast::tcp_stream&>> tls;
+    };
+    std::unique_ptr<Layers> layers_;  ///< stays where it is, since TLS refers to the connection
+};
+
+/// The end of a WebSocket: its close frames were exchanged, so that only the connection is left to be closed.
+template <class Handler>
+void async_teardown(beast::role_type role, Stream& stream, Handler&& handler) {
+    beast::async_teardown(role, stream.next_layer(), std::forward<Handler>(handler));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------
 // A browser or script that is connected by WebSocket.
 
 using SharedText = std::shared_ptr<const std::string>;
 
 class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
 public:
-    WebSocketClient(tcp::socket&& socket, Shared& shared, ConnectionBook::Place place)
-        : stream_(std::move(socket)),
+    WebSocketClient(Stream&& stream, Shared& shared, ConnectionBook::Place place)
+        : stream_(std::move(stream)),
           shared_(shared),
           place_(std::move(place)),
           id_(shared.next_client++),
@@ -285,7 +349,7 @@ private:
         });
     }
 
-    websocket::stream<beast::tcp_stream> stream_;
+    websocket::stream<Stream> stream_;
     Shared& shared_;
     ConnectionBook::Place place_;
     ClientId id_;
@@ -312,11 +376,33 @@ public:
     HttpConnection(tcp::socket&& socket, Shared& shared, ConnectionBook::Place place)
         : stream_(std::move(socket)), shared_(shared), place_(std::move(place)) {}
 
+    /// Reads the first request. A server with TLS answers who comes without it, too, and sends him to the right
+    /// address.
+    void start() {
+        if (!shared_.tls) return read_header();
+        connection().expires_after(longest_silence);
+        may_be_given_up();
+        beast::async_detect_ssl(connection(), buffer_, [self = shared_from_this()](error_code error, bool is_tls) {
+            if (error) return self->close();
+            if (!is_tls) return self->read_header();
+            self->place_.be_busy();
+            self->stream_.begin_tls(*self->shared_.tls, self->buffer_.data(),
+                                    [self](error_code failed, std::size_t used) {
+                                        self->buffer_.consume(used);
+                                        if (failed) return self->connection().close();
+                                        self->read_header();
+                                    });
+        });
+    }
+
+private:
+    beast::tcp_stream& connection() { return stream_.next_layer(); }
+
     void read_header() {
         header_.emplace();
         // The header first: the limit of the body's size depends on the request.
         header_->body_limit(std::numeric_limits<std::uint64_t>::max());
-        stream_.expires_after(longest_silence);
+        connection().expires_after(longest_silence);
         may_be_given_up();
         http::async_read_header(stream_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error) return self->close();
@@ -325,13 +411,13 @@ public:
         });
     }
 
-private:
     void read_body() {
         const auto& header = header_->get();
         request_ = describe(header);
         is_head_ = header.method() == http::verb::head;
         keep_alive_ = header.keep_alive();
         version_ = header.version();
+        if (shared_.tls && !stream_.has_tls()) return refuse(answer_without_tls(request_));
         const bool upgrade = websocket::is_upgrade(header);
         const bool is_page = !upgrade && Routes::is_page(request_);
         const Access access = check_access(shared_.access, request_, is_page);
@@ -340,7 +426,7 @@ private:
         if (ImportRequests::is_import(request_)) return begin_upload();
         body_.emplace(std::move(*header_));
         body_->body_limit(largest_other_body);
-        stream_.expires_after(longest_silence);
+        connection().expires_after(longest_silence);
         http::async_read(stream_, buffer_, *body_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error == http::error::body_limit)
                 return self->refuse(error_response(413, self->request_.target, "has too large a body"));
@@ -355,9 +441,8 @@ private:
         if (!place_.become_viewer())
             return refuse(error_response(503, request_.target, "too many viewers are connected",
                                          "close some of them, and try again"));
-        stream_.expires_never();
-        std::make_shared<WebSocketClient>(stream_.release_socket(), shared_, std::move(place_))
-            ->accept(header_->release());
+        connection().expires_never();
+        std::make_shared<WebSocketClient>(std::move(stream_), shared_, std::move(place_))->accept(header_->release());
     }
 
     // Uploads -----------------------------------------------------------------------------------------------------
@@ -391,7 +476,7 @@ private:
         body.data = piece_.data();
         body.size = piece_.size();
         body.more = true;
-        stream_.expires_at(std::min(Clock::now() + longest_stall, upload_ends_));
+        connection().expires_at(std::min(Clock::now() + longest_stall, upload_ends_));
         http::async_read_some(
             stream_, buffer_, *upload_body_, [self = shared_from_this()](error_code error, std::size_t) {
                 if (error == http::error::need_buffer) error = {};
@@ -414,7 +499,7 @@ private:
 
     void finish_upload() {
         // An import takes long: it is answered from its own thread, through the network thread.
-        stream_.expires_never();
+        connection().expires_never();
         shared_.upload_queue->post([self = shared_from_this()] {
             const Result<void> finished = self->upload_->finish();
             asio::post(self->shared_.io, [self, finished] {
@@ -429,7 +514,7 @@ private:
     /// The connection may be closed to make room for others, because it only waits.
     void may_be_given_up() {
         place_.be_idle([weak = weak_from_this()] {
-            if (const auto self = weak.lock()) self->stream_.close();
+            if (const auto self = weak.lock()) self->connection().close();
         });
     }
 
@@ -437,7 +522,7 @@ private:
 
     void answer() {
         // The client may wait for its answer without a limit: for the current command, say.
-        stream_.expires_never();
+        connection().expires_never();
         if (Routes::is_scene(request_)) {
             may_be_given_up();
             shared_.scene->request_document([self = shared_from_this()](scene::Document document) {
@@ -505,11 +590,11 @@ private:
         // The page's first load carries the token in its address; the rest of its requests bring it as a cookie.
         if (!shared_.access.token.empty() && answer.status < 400 && !query_parameter(request_.target, "token").empty())
             response_->set("Set-Cookie", std::string(token_cookie) + "=" + shared_.access.token +
-                                             "; HttpOnly; SameSite=Strict; Path=/");
+                                             "; HttpOnly; SameSite=Strict; Path=/" + (shared_.tls ? "; Secure" : ""));
         response_->keep_alive(keep_alive_);
         response_->content_length(answer.body.size());
         if (!is_head_) response_->body() = std::move(answer.body);
-        stream_.expires_after(longest_answer);
+        connection().expires_after(longest_answer);
         http::async_write(stream_, *response_, [self = shared_from_this()](error_code error, std::size_t) {
             self->response_.reset();
             if (error || !self->keep_alive_) return self->close();
@@ -522,8 +607,9 @@ private:
     void close() {
         drop_upload();
         error_code ignored;
-        stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-        stream_.expires_after(std::chrono::seconds(5));
+        // Within TLS, a connection that ends without its farewell looks like an attack: the client ends it.
+        if (!stream_.has_tls()) connection().socket().shutdown(tcp::socket::shutdown_send, ignored);
+        connection().expires_after(std::chrono::seconds(5));
         may_be_given_up();
         read_rest();
     }
@@ -532,13 +618,13 @@ private:
         buffer_.clear();
         stream_.async_read_some(buffer_.prepare(64 << 10), [self = shared_from_this()](error_code error, std::size_t) {
             if (error)
-                self->stream_.close();
+                self->connection().close();
             else
                 self->read_rest();
         });
     }
 
-    beast::tcp_stream stream_;
+    Stream stream_;
     Shared& shared_;
     ConnectionBook::Place place_;
     beast::flat_buffer buffer_;
@@ -568,7 +654,9 @@ struct Server::State {
     std::atomic<bool> frame_posted{false};
 
     Result<void> listen(const ServerOptions& options);
+    Result<void> use_certificate(const ServerOptions& options);
     Result<void> open_routes(const ServerOptions& options);
+    [[nodiscard]] std::string url_at(const std::string& at) const;
     void accept();
     void accept_later(const error_code& error);
     void welcome(tcp::socket socket);
@@ -599,6 +687,7 @@ Server::~Server() {
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     std::unique_ptr<Server> server(new Server);
     State& state = *server->state_;
+    if (auto secured = state.use_certificate(options); !secured) return secured.error();
     if (auto opened = state.open_routes(options); !opened) return opened.error();
     if (auto listening = state.listen(options); !listening) return listening.error();
     Shared& shared = state.shared;
@@ -609,12 +698,26 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     shared.fill = std::make_unique<LibraryFill>(std::move(fill), options.scene.database, options.scene.taxonomy_folder,
                                                 *shared.imports, listener.broadcast);
     SceneThreadOptions scene_options = options.scene;
-    scene_options.greeting = [&shared] { return nlohmann::json{{"import", shared.fill->state()}}; };
+    scene_options.greeting = [&shared] {
+        return nlohmann::json{{"import", shared.fill->state()}, {"server", {{"tls", shared.tls != nullptr}}}};
+    };
     auto scene = SceneThread::start(scene_options, listener);
     if (!scene) return scene.error();
     shared.scene = std::move(*scene);
     state.accept();
     return server;
+}
+
+Result<void> Server::State::use_certificate(const ServerOptions& options) {
+    if (!options.certificate) return {};
+    if (auto right = check_certificate(*options.certificate, std::time(nullptr)); !right) return right;
+    shared.tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
+    error_code error;
+    shared.tls->set_options(asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1, error);
+    if (!error) shared.tls->use_certificate_chain_file(options.certificate->certificate.string(), error);
+    if (!error) shared.tls->use_private_key_file(options.certificate->key.string(), asio::ssl::context::pem, error);
+    if (error) return Error{options.certificate->certificate.string(), "cannot be used: " + error.message(), ""};
+    return {};
 }
 
 Result<void> Server::State::open_routes(const ServerOptions& options) {
@@ -639,8 +742,9 @@ Result<void> Server::State::listen(const ServerOptions& options) {
     const asio::ip::address ip = asio::ip::make_address(options.address, error);
     if (error) return Error{"--address " + options.address, "is not an IP address", "for example 127.0.0.1 or 0.0.0.0"};
     shared.access.loopback_only = ip.is_loopback();
+    shared.access.tls = options.certificate.has_value();
     if (!ip.is_loopback()) shared.access.token = random_token();
-    address = ip.is_v6() ? "[" + options.address + "]" : options.address;
+    address = options.address;
     acceptor.emplace(shared.io);
     acceptor->open(ip.is_v6() ? tcp::v6() : tcp::v4(), error);
     if (!error) acceptor->set_option(asio::socket_base::reuse_address(true), error);
@@ -692,7 +796,7 @@ void Server::State::welcome(tcp::socket socket) {
     // Small frames must not wait for more to come.
     socket.set_option(tcp::no_delay(true), ignored);
     try {
-        std::make_shared<HttpConnection>(std::move(socket), shared, std::move(*place))->read_header();
+        std::make_shared<HttpConnection>(std::move(socket), shared, std::move(*place))->start();
     } catch (const std::exception& thrown) {
         report_failure(thrown);
     }
@@ -752,12 +856,25 @@ void Server::State::request_end() {
     if (shared.upload_queue) shared.upload_queue->request_stop();
 }
 
-std::string Server::url() const {
-    const bool any = state_->address == "0.0.0.0" || state_->address == "[::]";
-    std::string url = "http://" + (any ? std::string("127.0.0.1") : state_->address) + ":" +
-                      std::to_string(state_->shared.access.port) + "/";
-    if (!state_->shared.access.token.empty()) url += "?token=" + state_->shared.access.token;
+std::string Server::State::url_at(const std::string& at) const {
+    const std::string host = at.find(':') == std::string::npos ? at : "[" + at + "]";
+    std::string url = (shared.tls ? "https://" : "http://") + host + ":" + std::to_string(shared.access.port) + "/";
+    if (!shared.access.token.empty()) url += "?token=" + shared.access.token;
     return url;
+}
+
+std::string Server::url() const {
+    const bool is_any = state_->address == "0.0.0.0" || state_->address == "::";
+    return state_->url_at(is_any ? "127.0.0.1" : state_->address);
+}
+
+std::vector<std::string> Server::urls_for_others() const {
+    if (state_->shared.access.loopback_only) return {};
+    const bool is_any = state_->address == "0.0.0.0" || state_->address == "::";
+    if (!is_any) return {url()};
+    std::vector<std::string> urls;
+    for (const std::string& address : lan_addresses(state_->address == "::")) urls.push_back(state_->url_at(address));
+    return urls;
 }
 
 void Server::run() {

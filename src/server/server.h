@@ -4,9 +4,12 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "foundation/result.h"
+#include "server/certificate.h"
 #include "server/library_fill.h"
 #include "server/scene_thread.h"
 
@@ -17,6 +20,7 @@ struct ServerOptions {
     unsigned short port = 8420;           ///< 0: any free one
     bool any_port_if_taken = true;        ///< take a free port where `port` is in use
     std::filesystem::path studio_folder;  ///< the built front-end
+    std::optional<CertificateFiles> certificate = {};  ///< HTTPS with these; plain HTTP is sent there
     SceneThreadOptions scene;
     FillOptions fill;  ///< what is imported in the background
 };
@@ -31,6 +35,8 @@ public:
 
     /// The Studio's address, with the token where one is needed.
     [[nodiscard]] std::string url() const;
+    /// Its addresses for other machines, those of this machine's networks; none where it listens on loopback only.
+    [[nodiscard]] std::vector<std::string> urls_for_others() const;
     /// Serves until request_stop() or SIGINT or SIGTERM.
     void run();
     /// May be called from any thread.

@@ -42,6 +42,24 @@ TEST(AccessOnLoopback, ForeignPagesReachNothing) {
     EXPECT_FALSE(check_access(loopback, from_site("cross-site", "navigate", "document"), false).granted);
 }
 
+TEST(AccessOnLoopback, WithTlsOnlyPagesThatCameByHttpsAreItsOwn) {
+    const AccessRules secured{true, 8420, "", true};
+    EXPECT_TRUE(check_access(secured, request("localhost:8420", "https://localhost:8420"), false).granted);
+    EXPECT_FALSE(check_access(secured, request("localhost:8420", "http://localhost:8420"), false).granted);
+    EXPECT_FALSE(check_access(secured, request("evil.example", "https://evil.example"), false).granted);
+}
+
+TEST(AccessWithoutTls, IsSentToTheSamePageByHttps) {
+    HttpRequest asked = request("studio.local:8420");
+    asked.target = "/?scene=x&token=y";
+    const HttpResponse sent = answer_without_tls(asked);
+    EXPECT_EQ(sent.status, 307u);
+    EXPECT_EQ(sent.headers.at("Location"), "https://studio.local:8420/?scene=x&token=y");
+    asked.method = "POST";
+    EXPECT_EQ(answer_without_tls(asked).status, 403u);
+    EXPECT_EQ(answer_without_tls(request("")).status, 403u);
+}
+
 TEST(AccessOnLoopback, ALinkOfAnotherPageOpensTheStudio) {
     EXPECT_TRUE(check_access(loopback, from_site("cross-site", "navigate", "document"), true).granted);
     EXPECT_TRUE(check_access(loopback, from_site("none", "navigate", "document"), false).granted);

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import socket
+import ssl
 import struct
 import subprocess
 import tempfile
@@ -49,11 +50,13 @@ class Server:
 class Viewer:
     """One WebSocket. It reads only when asked to; messages wait in the system's buffers meanwhile."""
 
-    def __init__(self, port: int, buffer: int = 0):
+    def __init__(self, port: int, buffer: int = 0, context: ssl.SSLContext | None = None):
         self.socket = socket.socket()
         if buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
         self.socket.connect(("127.0.0.1", port))
+        if context:
+            self.socket = context.wrap_socket(self.socket, server_hostname="127.0.0.1")
         self.socket.settimeout(300)
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall((f"GET /ws HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
@@ -97,7 +100,10 @@ class Viewer:
     def _send(self, kind: int, payload: bytes):
         head = bytes([128 | kind])
         size = len(payload)
-        head += bytes([128 | size]) if size < 126 else bytes([254]) + struct.pack(">H", size)
+        if size < 126:
+            head += bytes([128 | size])
+        else:
+            head += bytes([254]) + struct.pack(">H", size) if size < 65536 else bytes([255]) + struct.pack(">Q", size)
         self.socket.sendall(head + bytes(4) + payload)
 
     def ask(self, command: str, **params):
