@@ -705,6 +705,11 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     if (!scene) return scene.error();
     shared.scene = std::move(*scene);
     state.accept();
+    // Before anybody is told the address: who stops the server then stops it in order.
+    state.signals.emplace(shared.io, SIGINT, SIGTERM);
+    state.signals->async_wait([&state](error_code error, int) {
+        if (!error) state.stop();
+    });
     return server;
 }
 
@@ -879,10 +884,6 @@ std::vector<std::string> Server::urls_for_others() const {
 
 void Server::run() {
     state_->shared.fill->start();
-    state_->signals.emplace(state_->shared.io, SIGINT, SIGTERM);
-    state_->signals->async_wait([this](error_code error, int) {
-        if (!error) state_->stop();
-    });
     // An exception of a handler (memory, files) ends its own connection and nothing else.
     for (;;) {
         try {

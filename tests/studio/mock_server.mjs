@@ -114,6 +114,7 @@ export class MockServer {
       this.tell([{ op: "reset", scene: this.scene }]);
     },
     "client.present": () => {},
+    "simulation.listen": () => {},
     "entity.lock": ({ indices, locked }) => this.edit("lock", () => indices.forEach((index) => (this.entity(index).locked = locked))),
     "catalog.stop": () => {},
     "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", settings }]),

@@ -51,12 +51,12 @@ struct Applier {
     void operator()(const HeadingChange& change) const { static_cast<Heading&>(document) = change.after; }
 };
 
-// Key of changes that can be merged: the kind of change and the entity; empty for other changes.
-std::optional<std::pair<std::size_t, EntityIndex>> merge_key(const Change& change) {
-    if (const auto* moved = std::get_if<PoseChange>(&change)) return std::pair{change.index(), moved->index};
-    const auto* changed = std::get_if<EntityChange>(&change);
-    if (changed && changed->same_geometry) return std::pair{change.index(), changed->after->index};
-    return std::nullopt;
+// Whether two changes of one thing can be one: both move it, or both change its fields.
+bool can_merge(const Change& first, const Change& second) {
+    if (first.index() != second.index()) return false;
+    if (std::holds_alternative<PoseChange>(first)) return true;
+    const auto* one = std::get_if<EntityChange>(&first);
+    return one && one->same_geometry && std::get<EntityChange>(second).same_geometry;
 }
 
 bool comes_or_goes(const Change& change) {
@@ -171,9 +171,30 @@ std::deque<Edit>::iterator History::last_of(PersonId person) {
 }
 
 const Edit* History::undoable(PersonId person) const {
-    const auto found =
-        std::find_if(done_.rbegin(), done_.rend(), [person](const Edit& edit) { return edit.person == person; });
+    const auto found = std::find_if(done_.rbegin(), done_.rend(),
+                                    [&](const Edit& edit) { return edit.person == person && !is_set_aside(edit); });
     return found == done_.rend() ? nullptr : &*found;
+}
+
+bool History::is_set_aside(const Edit& edit) const {
+    return edit.refused > 0 && edit.refused > last_act_of_others(edit.person);
+}
+
+std::uint64_t History::last_act_of_others(PersonId person) const {
+    std::uint64_t last = 0;
+    for (const auto& [other, time] : acted_)
+        if (other != person) last = std::max(last, time);
+    return last;
+}
+
+void History::set_aside(PersonId person) {
+    const auto edit = next_of(person);
+    if (edit != done_.end()) edit->refused = last_act_of_others(person) + 1;
+}
+
+std::deque<Edit>::iterator History::next_of(PersonId person) {
+    const Edit* next = undoable(person);
+    return std::find_if(done_.begin(), done_.end(), [next](const Edit& edit) { return &edit == next; });
 }
 
 const Edit* History::redoable(PersonId person) const {
@@ -181,9 +202,10 @@ const Edit* History::redoable(PersonId person) const {
     return found == undone_.end() || found->second.empty() ? nullptr : &found->second.back();
 }
 
-bool History::others_followed(const Edit& edit) const {
-    return std::any_of(acted_.begin(), acted_.end(),
-                       [&edit](const auto& acted) { return acted.first != edit.person && acted.second > edit.time; });
+bool History::is_followed(const Edit& edit) const {
+    return last_act_of_others(edit.person) > edit.time ||
+           std::any_of(done_.begin(), done_.end(),
+                       [&edit](const Edit& other) { return !other.catalog && other.time > edit.time; });
 }
 
 const Edit* History::last_of_others(PersonId person, ChangedThing thing) const {
@@ -195,14 +217,12 @@ const Edit* History::last_of_others(PersonId person, ChangedThing thing) const {
     return found == done_.rend() ? nullptr : &*found;
 }
 
-// Whether another person has done or undone an edit of a thing of `edit` since `last`.
-bool History::others_changed_since(const Edit& last, const Edit& edit) const {
+// Whether another person has done or undone an edit of one of the things since then.
+bool History::others_changed(PersonId person, const std::set<ChangedThing>& things, std::uint64_t since) const {
     const auto meets = [&](const Edit& other) {
-        return other.person != edit.person && other.time > last.time &&
-               std::any_of(other.changes.begin(), other.changes.end(), [&](const Change& theirs) {
-                   return std::any_of(edit.changes.begin(), edit.changes.end(),
-                                      [&](const Change& ours) { return thing_of(ours) == thing_of(theirs); });
-               });
+        return other.person != person && other.time > since &&
+               std::any_of(other.changes.begin(), other.changes.end(),
+                           [&](const Change& change) { return things.contains(thing_of(change)); });
     };
     return std::any_of(done_.begin(), done_.end(), meets) ||
            std::any_of(undone_.begin(), undone_.end(), [&](const auto& undone) {
@@ -211,28 +231,33 @@ bool History::others_changed_since(const Edit& last, const Edit& edit) const {
 }
 
 // A drag is many small edits of the same poses, or of the same entity: the first state before and the last state after
-// are kept. Edits of other people in between do not end it.
+// are kept. Edits of other people in between do not end it, unless they are of the same things: those would be undone
+// with the step.
 bool History::merge(Edit& edit) {
     const auto open = merging_.find(edit.person);
     if (edit.merge.empty() || open == merging_.end() || is_saved()) return false;
     const auto last = last_of(edit.person);
     if (last == done_.end() || last->mark != open->second || last->merge != edit.merge) return false;
-    // Another person's edit of the same thing would be undone with the step.
-    if (others_followed(*last) && others_changed_since(*last, edit)) return false;
+    if (is_followed(*last)) {
+        std::set<ChangedThing> things;
+        for (const Change& change : last->changes) things.insert(thing_of(change));
+        for (const Change& change : edit.changes) things.insert(thing_of(change));
+        if (others_changed(edit.person, things, last->time)) return false;
+    }
+
+    // A change becomes a part of the last one of its thing, if that is of the same kind.
     std::vector<Change>& done = last->changes;
-    std::map<std::pair<std::size_t, EntityIndex>, std::size_t> places;
-    for (std::size_t i = 0; i < done.size(); ++i)
-        if (const auto key = merge_key(done[i])) places.emplace(*key, i);
+    std::map<ChangedThing, std::size_t> last_of_thing;
+    for (std::size_t i = 0; i < done.size(); ++i) last_of_thing[thing_of(done[i])] = i;
     for (Change& change : edit.changes) {
-        const auto key = merge_key(change);
-        const auto same = key ? places.find(*key) : places.end();
-        if (same == places.end()) {
-            if (key) places.emplace(*key, done.size());
+        const auto [found, is_new] = last_of_thing.try_emplace(thing_of(change), done.size());
+        if (is_new || !can_merge(done[found->second], change)) {
+            found->second = done.size();
             done.push_back(std::move(change));
-        } else if (auto* moved = std::get_if<PoseChange>(&done[same->second])) {
+        } else if (auto* moved = std::get_if<PoseChange>(&done[found->second])) {
             moved->after = std::get<PoseChange>(change).after;
         } else {
-            std::get<EntityChange>(done[same->second]).after = std::get<EntityChange>(change).after;
+            std::get<EntityChange>(done[found->second]).after = std::get<EntityChange>(change).after;
         }
     }
     last->next_after = edit.next_after;
@@ -255,7 +280,7 @@ void History::add(Edit edit) {
 }
 
 void History::move_back(PersonId person, std::vector<Change> changes) {
-    const auto edit = last_of(person);
+    const auto edit = next_of(person);
     note(*edit, false);
     edit->time = clock_;
     edit->changes = std::move(changes);
@@ -275,11 +300,11 @@ void History::move_forward(PersonId person, std::vector<Change> changes) {
 }
 
 void History::move_back(PersonId person, std::int64_t batch) {
-    last_of(person)->catalog->again = batch;
+    next_of(person)->catalog->again = batch;
     move_back(person, std::vector<Change>());
 }
 
-void History::drop_undoable(PersonId person) { done_.erase(last_of(person)); }
+void History::drop_undoable(PersonId person) { done_.erase(next_of(person)); }
 void History::drop_redoable(PersonId person) { undone_[person].pop_back(); }
 
 void History::mark_saved() {

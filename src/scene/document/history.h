@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -57,13 +59,15 @@ struct Edit {
     PersonId person = 0;
     std::uint64_t mark = 0;  ///< given by the history: tells this state of the edit from all others
     std::uint64_t time = 0;  ///< given by the history: when it was done or undone
+    /// When undo was refused, after the last act of somebody else; undo passes it until somebody acts again.
+    std::uint64_t refused = 0;
 };
 
 /// The thing that a change is about: an entity, a joint, an action or the heading (number 0).
 struct ChangedThing {
     enum class Kind : std::uint8_t { entity, joint, action, heading } kind = Kind::entity;
     std::uint32_t number = 0;
-    friend bool operator==(const ChangedThing&, const ChangedThing&) = default;
+    friend auto operator<=>(const ChangedThing&, const ChangedThing&) = default;
 };
 ChangedThing thing_of(const Change& change);
 
@@ -81,12 +85,14 @@ Change reversed(const Change& change);
 class History {
 public:
     void add(Edit edit);
-    /// The person's edit that undo would revert; null where there is none.
+    /// The person's last edit that is not set aside, which undo would revert; null where there is none.
     [[nodiscard]] const Edit* undoable(PersonId person) const;
     [[nodiscard]] const Edit* redoable(PersonId person) const;
-    /// Whether somebody else did, undid or redid an edit of the document after this one of the lists: then it must be
-    /// rebased on the document as it is.
-    [[nodiscard]] bool others_followed(const Edit& edit) const;
+    /// Whether an edit of the document was done after this one of the lists, or somebody else has undone or redone
+    /// one: then it must be rebased on the document as it is.
+    [[nodiscard]] bool is_followed(const Edit& edit) const;
+    /// Sets aside the person's edit that undo was refused: the next undo reverts the one before it.
+    void set_aside(PersonId person);
     /// The last done edit of another person that changed the thing; null where there is none.
     [[nodiscard]] const Edit* last_of_others(PersonId person, ChangedThing thing) const;
     /// Call after the person's edit was undone or redone, with the edit's changes as they are now: those that undo
@@ -109,10 +115,14 @@ public:
 
 private:
     bool merge(Edit& edit);
-    [[nodiscard]] bool others_changed_since(const Edit& last, const Edit& edit) const;
+    [[nodiscard]] bool others_changed(PersonId person, const std::set<ChangedThing>& things, std::uint64_t since) const;
+    [[nodiscard]] bool is_set_aside(const Edit& edit) const;
+    [[nodiscard]] std::uint64_t last_act_of_others(PersonId person) const;
     [[nodiscard]] std::uint64_t next_mark();
     void note(const Edit& edit, bool is_applied);
     [[nodiscard]] std::deque<Edit>::iterator last_of(PersonId person);
+    /// undoable(), as a place in the list.
+    [[nodiscard]] std::deque<Edit>::iterator next_of(PersonId person);
 
     std::deque<Edit> done_;
     std::map<PersonId, std::vector<Edit>> undone_;

@@ -169,8 +169,11 @@ private:
     }
 
     Why take(const HeadingChange& change, std::vector<Change>& out) {
-        Heading merged = document_;
-        if (const Why field = merge_fields(merged, change.before, change.after, false))
+        Heading merged = document_, before = change.before;
+        // Where a save has changed title or camera since, they stay.
+        if (merged.title != before.title) before.title = change.after.title;
+        if (!are_same(merged.camera, before.camera)) before.camera = change.after.camera;
+        if (const Why field = merge_fields(merged, before, change.after, false))
             return "its " + *field + " was changed since";
         out.emplace_back(HeadingChange{document_, merged});
         return {};

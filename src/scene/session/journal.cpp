@@ -13,6 +13,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <string_view>
 
 #include "foundation/state_hash.h"
@@ -91,7 +92,10 @@ std::optional<json> head_of(std::istream& in) {
     std::string line;
     if (!std::getline(in, line)) return std::nullopt;
     std::optional<json> head = value_of(line);
-    if (!head || !head->is_object() || head->value("embody_journal", 0) != format_version) return std::nullopt;
+    if (!head || !head->is_object() || !head->contains("embody_journal") ||
+        (*head)["embody_journal"] != format_version || !head->contains("edits") ||
+        !(*head)["edits"].is_number_unsigned())
+        return std::nullopt;
     for (const char* field : {"scene", "title", "started"})
         if (!head->contains(field) || !(*head)[field].is_string()) return std::nullopt;
     return head;
@@ -101,17 +105,28 @@ std::vector<fs::path> journals_in(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code problem;
     for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem))
-        if (entry->path().extension() == extension) files.push_back(entry->path());
+        // Only regular files: a pipe of that name would never be read to its end.
+        if (std::error_code unreadable; entry->path().extension() == extension &&
+                                        entry->symlink_status(unreadable).type() == fs::file_type::regular)
+            files.push_back(entry->path());
     return files;
 }
 
-// A name that no file of the folder has.
+// A name that no other file has, nor one that another program makes in the same second.
 fs::path free_file(const fs::path& folder, const std::string& name, std::string time) {
     std::erase(time, ':');
-    const std::string stem = shortened_stem(name) + " " + time;
-    fs::path file = folder / (stem + extension);
-    for (int number = 2; fs::exists(file); ++number) file = folder / (stem + " " + std::to_string(number) + extension);
-    return file;
+    char digits[8];
+    const std::to_chars_result end = std::to_chars(digits, digits + sizeof digits, std::random_device()(), 16);
+    return folder / (shortened_stem(name) + " " + time + " " + std::string(digits, end.ptr) + extension);
+}
+
+// Applies the edit of a line; false where it is none.
+bool apply_edit(Document& document, const json& edit) {
+    if (!edit.is_object() || !edit.contains("changes") || !edit.contains("next_index")) return false;
+    const json& next = edit["next_index"];
+    if (!next.is_number_unsigned() || !apply_changes(document, edit["changes"]).ok()) return false;
+    document.next_index = next.get<EntityIndex>();
+    return true;
 }
 
 }  // namespace
@@ -163,15 +178,17 @@ Result<void> Journal::write_anew(const Document& document) {
     descriptor_ = opened;
     whole_size_ = text.size();
     lines_size_ = 0;
-    is_dirty_ = false;
+    is_torn_ = is_dirty_ = false;
     return {};
 }
 
 Result<void> Journal::add(const json& changes, const Document& document) {
     ++edits_;
-    if (lines_size_ > std::max(whole_size_, min_lines_size)) return write_anew(document);
+    // Behind a line that was written in part no other could be read.
+    if (is_torn_ || lines_size_ > std::max(whole_size_, min_lines_size)) return write_anew(document);
     const std::string line = line_of({{"changes", changes}, {"next_index", document.next_index}});
-    if (!write_all(descriptor_, line)) return can_not_write(file_);
+    is_torn_ = !write_all(descriptor_, line);
+    if (is_torn_) return can_not_write(file_);
     lines_size_ += line.size();
     {
         const std::lock_guard lock(mutex_);
@@ -216,7 +233,7 @@ std::vector<Recovery> list_recoveries(const fs::path& folder) {
         if (!head || is_held(file)) continue;
         std::error_code ignored;
         Recovery recovery{file, (*head)["scene"], (*head)["title"], utc_text(fs::last_write_time(file, ignored)),
-                          head->value("edits", std::size_t{0})};
+                          (*head)["edits"].get<std::size_t>()};
         std::string line;
         std::getline(in, line);  // the document
         while (std::getline(in, line) && !in.eof()) ++recovery.edits;
@@ -241,13 +258,13 @@ Result<Recovered> read_journal(const fs::path& file) {
         return Error{file.string() + ": " + document.error().where, document.error().why, document.error().remedy};
     Recovered recovered{std::move(document).value(), (*head)["scene"]};
 
-    // Each line is all the changes of an edit, or it is not there.
+    // Each line is all the changes of an edit. Behind one that is not whole nothing can be trusted.
     while (std::getline(in, line)) {
         const std::optional<json> edit = value_of(line);
-        if (!edit || !edit->is_object() || !edit->contains("changes")) break;
-        if (!apply_changes(recovered.document, (*edit)["changes"]).ok()) break;
-        recovered.document.next_index = edit->value("next_index", recovered.document.next_index);
+        if (!edit || !apply_edit(recovered.document, *edit)) break;
     }
+    // A kill in the middle of the last line lost an edit that nobody was told of.
+    while (std::getline(in, line)) ++recovered.lost;
     return recovered;
 }
 

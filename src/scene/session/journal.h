@@ -29,7 +29,8 @@ public:
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
 
-    /// Appends the changes of an edit as a document event tells them; `document` is as it is after them.
+    /// Appends the changes of an edit as a document event tells them; `document` is as it is after them. After an error
+    /// the next call writes the whole document anew; until then the file keeps the edits before.
     Result<void> add(const nlohmann::json& changes, const Document& document);
     /// Removes the file: its document is saved.
     void remove();
@@ -45,6 +46,7 @@ private:
     std::size_t whole_size_ = 0;  ///< bytes of the document as it was written last
     std::size_t lines_size_ = 0;  ///< bytes of the edits behind it
     std::size_t edits_ = 1;       ///< with that which began the journal
+    bool is_torn_ = false;        ///< the last line was written in part
 
     std::mutex mutex_;  ///< guards what follows, and the descriptor against the syncing thread
     std::condition_variable changed_;
@@ -66,7 +68,8 @@ std::vector<Recovery> list_recoveries(const std::filesystem::path& folder);
 
 struct Recovered {
     Document document;
-    std::string scene;  ///< as in Recovery
+    std::string scene;     ///< as in Recovery
+    std::size_t lost = 0;  ///< number of edits behind a damaged line, which could not be read
 };
 /// The document with all edits up to the first line that is not whole.
 Result<Recovered> read_journal(const std::filesystem::path& file);

@@ -16,12 +16,26 @@ namespace {
 /// Who has not answered in this time agrees.
 constexpr auto answer_time = std::chrono::seconds(20);
 
-Result<void> open_now(SessionState& state, Opening opening) {
-    const std::string place = opening.place;
-    if (Result<void> opened = state.open(std::move(opening.document), opening.name, opening.is_unsaved); !opened.ok())
-        return in_place(place, opened.error());
+// A journal that is open now is not needed any more. One with a damaged line may have more in it than could be read.
+void put_away(SessionState& state, const Opening& opening) {
+    if (opening.recovery.empty()) return;
     std::error_code ignored;
-    if (!opening.recovery.empty()) std::filesystem::remove(opening.recovery, ignored);
+    if (opening.lost > 0) {
+        std::filesystem::path kept = opening.recovery;
+        kept += ".damaged";
+        std::filesystem::rename(opening.recovery, kept, ignored);
+        state.tell_message("warning", std::to_string(opening.lost) +
+                                          " edits behind a damaged line could not be read; the file is kept as " +
+                                          kept.string());
+    } else if (state.journal) {
+        std::filesystem::remove(opening.recovery, ignored);
+    }
+}
+
+Result<void> open_now(SessionState& state, Opening opening) {
+    if (Result<void> opened = state.open(std::move(opening.document), opening.name, opening.is_unsaved); !opened.ok())
+        return in_place(opening.place, opened.error());
+    put_away(state, opening);
     return {};
 }
 
@@ -43,6 +57,8 @@ Result<json> open_or_ask(SessionState& state, Opening opening, bool may_ask) {
         if (state.question) end_question(state);
         return json::object();
     }
+    if (!state.people.client(state.client).is_member)
+        return Error{"scene", "other people have their scene open here", "ask: false opens another one all the same"};
     if (state.question)
         return Error{"scene", state.people.called(state.question->asker) + " is asking already to open another scene",
                      "wait for the answer"};
@@ -71,6 +87,8 @@ Result<json> open_or_ask(SessionState& state, Opening opening, bool may_ask) {
 Result<void> answer_question(SessionState& state, std::uint64_t number, bool agrees) {
     if (!state.question || state.question->number != number)
         return Error{"question", "there is no question " + std::to_string(number) + " any more"};
+    if (state.client != state.question->asker && !state.question->waiting.contains(state.client))
+        return Error{"question", "you were not asked, or have answered"};
     if (agrees) {
         state.question->waiting.erase(state.client);
         follow_question(state, Clock::now());
@@ -91,9 +109,15 @@ void follow_question(SessionState& state, Clock::time_point now) {
     if (!state.question) return;
     std::erase_if(state.question->waiting,
                   [&state](ClientId client) { return !state.people.clients().contains(client); });
-    if (!state.question->waiting.empty() && now < state.question->until) return;
+    const bool asker_left = !state.people.clients().contains(state.question->asker);
+    if (!asker_left && !state.question->waiting.empty() && now < state.question->until) return;
     const ClientId asker = state.question->asker;
-    if (Result<void> opened = open_now(state, end_question(state)); !opened.ok())
+    Result<Opening> opening = end_question(state);
+    // Who asked has left: nobody wants it any more.
+    if (!state.people.clients().contains(asker)) return;
+    if (opening.value().again) opening = opening.value().again(state);
+    const Result<void> opened = opening.ok() ? open_now(state, std::move(opening).value()) : opening.error();
+    if (!opened.ok())
         state.tell_to(asker, {{"event", "message"}, {"level", "error"}, {"text", opened.error().message()}});
 }
 

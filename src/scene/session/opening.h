@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
@@ -22,6 +23,9 @@ struct Opening {
     std::string place;               ///< what refusals by physics call it; empty: nothing
     bool is_unsaved = false;         ///< it is in no file of that name
     std::filesystem::path recovery;  ///< the journal that it was read from; removed once it is open
+    std::size_t lost = 0;            ///< edits of the journal that could not be read
+    /// Reads it again where it is in a file: that may have changed while people were asked. May be empty.
+    std::function<Result<Opening>(const SessionState&)> again;
 };
 
 /// An opening that the other members are asked about (docs/session.md).

@@ -14,7 +14,7 @@ namespace {
 /// Colours that people with any colour vision can tell apart (Okabe and Ito, "Color universal design", 2008), without
 /// black and without the yellow that is lost on a light background.
 constexpr std::array<const char*, 6> palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
-/// Persons that are remembered; of more, those who are not connected are forgotten.
+/// Persons that are remembered; of more, those who are not connected and have no steps are forgotten.
 constexpr std::size_t max_persons = 1000;
 
 }  // namespace
@@ -26,18 +26,32 @@ Client& People::client(ClientId id) {
     return found->second;
 }
 
-Client& People::meet(ClientId id, const std::string& person) {
+Result<Client*> People::meet(ClientId id, const std::string& person, const History& history) {
     Client& met = client(id);
-    if (persons_.size() >= max_persons) {
-        std::erase_if(persons_, [this](const auto& known) {
-            return std::none_of(clients_.begin(), clients_.end(),
-                                [&](const auto& other) { return other.second.person == known.second; });
-        });
+    if (met.is_member) {
+        const auto known = persons_.find(person);
+        if (known != persons_.end() && known->second == met.person) return &met;
+        return Error{"person", "this connection is another person already", "open a connection for each person"};
     }
-    met.person = persons_.try_emplace(person, met.person).first->second;
-    if (!met.is_member) met.color = free_color();
+    if (!persons_.contains(person)) {
+        if (persons_.size() >= max_persons) forget_absent(history);
+        if (persons_.size() >= max_persons) return Error{"person", "too many people have been here", "leave it out"};
+        persons_.emplace(person, ++last_person_);
+    }
+    met.person = persons_.at(person);
+    met.color = free_color();
     met.is_member = true;
-    return met;
+    return &met;
+}
+
+// Those who are not connected and have nothing to undo or redo.
+void People::forget_absent(const History& history) {
+    std::erase_if(persons_, [&](const auto& known) {
+        const PersonId person = known.second;
+        return !history.undoable(person) && !history.redoable(person) &&
+               std::none_of(clients_.begin(), clients_.end(),
+                            [person](const auto& other) { return other.second.person == person; });
+    });
 }
 
 bool People::leave(ClientId id) {

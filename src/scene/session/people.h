@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/result.h"
 #include "scene/document/history.h"
 #include "scene/session/session.h"
 
@@ -30,8 +31,9 @@ class People {
 public:
     /// The client, known or new; a new one is a person of its own.
     Client& client(ClientId id);
-    /// Makes it a member that is the person of this text, the same as at an earlier connection.
-    Client& meet(ClientId id, const std::string& person);
+    /// Makes it a member that is the person of this text, the same as at an earlier connection. The error: it is
+    /// another person already, or too many are known.
+    Result<Client*> meet(ClientId id, const std::string& person, const History& history);
     /// Whether it was a member.
     bool leave(ClientId id);
 
@@ -47,7 +49,8 @@ public:
     [[nodiscard]] nlohmann::json members() const;
 
 private:
-    std::string free_color() const;
+    [[nodiscard]] std::string free_color() const;
+    void forget_absent(const History& history);
 
     std::map<ClientId, Client> clients_;
     std::map<std::string, PersonId> persons_;  ///< by the text that the page keeps

@@ -197,7 +197,8 @@ void SessionState::record(Edit edit) {
 
 Result<void> SessionState::commit(Edit edit) {
     if (edit.changes.empty()) return {};
-    if (Result<void> allowed = check_locks(edit.changes); !allowed.ok()) return allowed;
+    for (const Change& change : edit.changes)
+        if (Result<void> allowed = check_lock(change); !allowed.ok()) return allowed;
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
     json told = told_changes(edit.changes);
     record(std::move(edit));
@@ -206,18 +207,33 @@ Result<void> SessionState::commit(Edit edit) {
 }
 
 Result<std::vector<Change>> SessionState::step_changes(const Edit& edit, std::vector<Change> recorded) {
-    if (!history.others_followed(edit)) return recorded;
-    Rebased now = rebased(recorded, document, lookup);
-    if (!now.conflict) return std::move(now.changes);
-    const ChangedThing thing = now.conflict->thing;
+    // Title and camera change with a save, too, which is no step: the heading is always taken as it is now.
+    const bool has_heading = std::any_of(recorded.begin(), recorded.end(), [](const Change& change) {
+        return std::holds_alternative<HeadingChange>(change);
+    });
+    if (has_heading || history.is_followed(edit)) {
+        Rebased now = rebased(recorded, document, lookup);
+        if (now.conflict) return refusal_of_step(edit, *now.conflict);
+        recorded = std::move(now.changes);
+    }
+    // A thing that goes is as the step left it, locked or not; what moves or changes may have been locked since.
+    for (const Change& change : recorded) {
+        const auto* entity = std::get_if<EntityChange>(&change);
+        if (entity && !entity->after) continue;
+        if (Result<void> allowed = check_lock(change); !allowed.ok()) return allowed.error();
+    }
+    return recorded;
+}
+
+Error SessionState::refusal_of_step(const Edit& edit, const Conflict& conflict) const {
+    const ChangedThing thing = conflict.thing;
     const Edit* other = history.last_of_others(edit.person, thing);
-    std::string what = thing.kind == ChangedThing::Kind::entity   ? called({thing.number})
-                       : thing.kind == ChangedThing::Kind::joint  ? "joint " + std::to_string(thing.number)
-                       : thing.kind == ChangedThing::Kind::action ? "action " + std::to_string(thing.number)
-                                                                  : "the scene";
-    return Error{edit.label,
-                 what + ": " + now.conflict->why + (other ? " by " + people.person_called(other->person) : ""),
-                 "change it by hand, or have the later change undone first"};
+    const std::string what = thing.kind == ChangedThing::Kind::entity   ? called({thing.number})
+                             : thing.kind == ChangedThing::Kind::joint  ? "joint " + std::to_string(thing.number)
+                             : thing.kind == ChangedThing::Kind::action ? "action " + std::to_string(thing.number)
+                                                                        : "the scene";
+    return {edit.label, what + ": " + conflict.why + (other ? " by " + people.person_called(other->person) : ""),
+            "change it by hand, or have the later change undone first; the next undo takes back the step before"};
 }
 
 Result<std::string> SessionState::undo() {
@@ -225,7 +241,11 @@ Result<std::string> SessionState::undo() {
     if (!edit) return std::string();
     if (edit->catalog) return undo_on_catalog(*this);
     Result<std::vector<Change>> changes = step_changes(*edit, reversed(edit->changes));
-    if (!changes.ok()) return changes.error();
+    if (!changes.ok()) {
+        history.set_aside(edit->person);
+        tell_histories();
+        return changes.error();
+    }
     if (Result<void> done = force_changes(changes.value()); !done.ok()) return done.error();
     std::string label = edit->label;
     // While somebody else is here, an index that was used is not used again: redo needs it.
@@ -302,25 +322,23 @@ void SessionState::keep(const json& changes) {
     if (journal_folder().empty()) return;
     // Undo led back to what is on disk.
     if (history.is_saved()) return mark_saved();
+    // The edit is done already: whatever fails here is told, and the next edit tries to write all.
     Result<void> kept;
-    if (journal) {
-        kept = journal->add(changes, document);
-    } else {
-        Result<std::unique_ptr<Journal>> begun = Journal::begin(journal_folder(), name, document);
-        if (begun.ok())
-            journal = std::move(begun).value();
-        else
-            kept = begun.error();
+    try {
+        kept = add_to_journal(changes);
+    } catch (const std::exception& thrown) {
+        kept = Error{journal_folder().string(), thrown.what()};
     }
-    if (kept.ok()) {
-        journal_failure_told = false;
-        return;
-    }
-    // The next edit begins a new one, in which all is written.
-    if (journal) journal->remove();
-    journal.reset();
-    if (!std::exchange(journal_failure_told, true))
-        tell_message("error", "Edits are not kept on disk: " + kept.error().message());
+    if (!kept.ok() && !is_unkept) tell_message("error", "Edits are not kept on disk: " + kept.error().message());
+    is_unkept = !kept.ok();
+}
+
+Result<void> SessionState::add_to_journal(const json& changes) {
+    if (journal) return journal->add(changes, document);
+    Result<std::unique_ptr<Journal>> begun = Journal::begin(journal_folder(), name, document);
+    if (!begun.ok()) return begun.error();
+    journal = std::move(begun).value();
+    return {};
 }
 
 void SessionState::mark_saved() {
@@ -338,19 +356,14 @@ Result<void> SessionState::check_unlocked(EntityIndex index) const {
     return Error{"entity " + std::to_string(index), called({index}) + " is locked", "unlock it first"};
 }
 
-Result<void> SessionState::check_locks(const std::vector<Change>& changes) const {
-    for (const Change& change : changes) {
-        const auto* entity = std::get_if<EntityChange>(&change);
-        const auto* pose = std::get_if<PoseChange>(&change);
-        EntityIndex touched = pose ? pose->index : 0;
-        if (entity && entity->before) {
-            const bool stays = entity->after && entity->same_geometry && entity->before->pose == entity->after->pose &&
-                               entity->before->scale == entity->after->scale;
-            if (!stays) touched = entity->before->index;
-        }
-        if (Result<void> allowed = check_unlocked(touched); !allowed.ok()) return allowed;
-    }
-    return {};
+Result<void> SessionState::check_lock(const Change& change) const {
+    if (const auto* pose = std::get_if<PoseChange>(&change)) return check_unlocked(pose->index);
+    const auto* entity = std::get_if<EntityChange>(&change);
+    if (!entity || !entity->before) return {};
+    const bool stays = entity->after && entity->same_geometry && entity->before->pose == entity->after->pose &&
+                       entity->before->scale == entity->after->scale &&
+                       entity->before->enabled == entity->after->enabled;
+    return stays ? Result<void>{} : check_unlocked(entity->before->index);
 }
 
 Result<const Entity*> SessionState::entity(EntityIndex index, const std::string& where) const {

@@ -43,7 +43,7 @@ struct SessionState {
     std::uint64_t revision = 0;
     History history;
     std::unique_ptr<Journal> journal;  ///< of the unsaved edits; null where there are none
-    bool journal_failure_told = false;
+    bool is_unkept = false;            ///< the last edits could not be written to the journal
 
     /// Never null: while stopped it holds the document's poses, for picking and placing.
     std::unique_ptr<Simulation> simulation;
@@ -114,8 +114,8 @@ struct SessionState {
     [[nodiscard]] std::string called(const std::vector<EntityIndex>& indices) const;
 
 private:
-    /// An error where the changes move, scale, reshape or remove something that is locked.
-    Result<void> check_locks(const std::vector<Change>& changes) const;
+    /// An error where the change moves, scales, reshapes, disables or removes something that is locked.
+    Result<void> check_lock(const Change& change) const;
     Result<void> sync(const Change& change);
     std::size_t sync_removals(std::span<const Change> changes);
     Result<void> sync_entity(const EntityChange& change);
@@ -125,11 +125,13 @@ private:
     Result<void> force_changes(const std::vector<Change>& changes);
     /// What a step of undo or redo changes in the document as it is.
     Result<std::vector<Change>> step_changes(const Edit& edit, std::vector<Change> recorded);
+    [[nodiscard]] Error refusal_of_step(const Edit& edit, const Conflict& conflict) const;
     /// Changes that the document has in it, for clients and the journal.
     [[nodiscard]] nlohmann::json told_changes(const std::vector<Change>& changes) const;
     void keep_and_tell(nlohmann::json changes);
     /// Appends an edit to the journal.
     void keep(const nlohmann::json& changes);
+    Result<void> add_to_journal(const nlohmann::json& changes);
     void tell_step();
     void tell_strikes();
     void tell_impacts();

@@ -323,6 +323,7 @@ export interface Commands {
   "simulation.grab": [{ index: number; point: Vector; target: Vector; hand?: string; rotation?: Quaternion; strength?: number }, unknown];
   "simulation.move_grab": [{ target: Vector; rotation?: Quaternion; hand?: string }, unknown];
   "simulation.release": [{ hand?: string }, unknown];
+  "simulation.listen": [{ impacts: boolean }, unknown];
   "simulation.touch": [{ hand: string; position?: Vector; rotation?: Quaternion; radius?: number }, unknown];
   "debug.draw": [{ show: readonly DebugName[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];

@@ -54,6 +54,7 @@ export class ContactSounds {
   readonly heard: Heard[] = [];
   private context: AudioContext | null = null;
   private voices = 0;
+  private listens = false;
   private readonly materials = new Map<number, Promise<RingName>>();
   private readonly place = new Vector3();
   private readonly forth = new Vector3();
@@ -66,6 +67,21 @@ export class ContactSounds {
       if (all) this.materials.clear();
       else for (const index of entities) this.materials.delete(index);
     });
+    parts.preferences.changed.on((name) => {
+      if (name === "sounds") void this.subscribe();
+    });
+    parts.server.changed.on(() => {
+      const { ready, isOpen } = parts.server;
+      if (isOpen && ready && !this.listens) void this.subscribe();
+      if (!isOpen) this.listens = false;
+    });
+  }
+
+  /** Asks the server for impacts while they are to be heard; it makes them only for who listens. */
+  private async subscribe(): Promise<void> {
+    const impacts = this.parts.preferences.get("sounds");
+    this.listens = impacts;
+    if (this.parts.server.isOpen) await this.parts.server.command("simulation.listen", { impacts });
   }
 
   take(impacts: readonly Impact[]): void {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 import { Quaternion, Vector3 } from "three";
-import { CommandRefused } from "../connection/connection";
 import type { Presence } from "../connection/messages";
 import type { Parts } from "../parts";
 import type { Grabbing } from "./grabbing";
@@ -16,28 +15,25 @@ const PAUSE_MS = 50;
 /** Tells the others where this user's head and hands are. */
 export class PresenceSender {
   private last = 0;
-  private busy = false;
-  /** A server that does not know the command is not asked again. */
-  private unknown = false;
   private readonly position = new Vector3();
   private readonly rotation = new Quaternion();
 
   constructor(
-    private readonly parts: Pick<Parts, "server">,
+    private readonly parts: Pick<Parts, "people">,
     private readonly hands: Hands,
     private readonly stance: Stance,
     private readonly grabbing: Grabbing,
   ) {}
 
   update(now: number): void {
-    if (this.busy || this.unknown || now - this.last < PAUSE_MS) return;
+    if (now - this.last < PAUSE_MS || this.parts.people.others.length === 0) return;
     this.last = now;
-    void this.send(this.present());
+    this.parts.people.put(this.present());
   }
 
   /** The user has taken the headset off. */
   end(): void {
-    if (!this.unknown) void this.send({ head: null, hands: [], mode: "page" });
+    this.parts.people.put({ head: null, hands: [], mode: "page" });
   }
 
   private present(): Presence {
@@ -48,15 +44,5 @@ export class PresenceSender {
       return { hand: hand.side, position: hand.position.toArray() as Three, rotation: hand.rotation.toArray() as Four, ...(held && { holds: held.index }) };
     });
     return { head: { position: this.position.toArray() as Three, rotation: this.rotation.toArray() as Four }, hands, mode: "headset" };
-  }
-
-  private async send(presence: Presence): Promise<void> {
-    this.busy = true;
-    try {
-      await this.parts.server.request("client.present", presence);
-    } catch (error) {
-      this.unknown = error instanceof CommandRefused;
-    }
-    this.busy = false;
   }
 }

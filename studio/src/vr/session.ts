@@ -24,7 +24,7 @@ import { Touch } from "./touch";
 import { Desk } from "./ui/desk";
 import { WristMenu } from "./wrist_menu";
 
-export type VrParts = Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "motion" | "models" | "entities" | "view">;
+export type VrParts = Pick<Parts, "preferences" | "server" | "notices" | "people" | "document" | "playback" | "selection" | "motion" | "models" | "entities" | "view">;
 
 const LONGEST_STEP_S = 0.1;
 /** Shadows reach so far around the user, m of the room. */

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session/journal.h"
 
+#include <sys/resource.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -100,6 +104,91 @@ TEST_F(JournalTest, ACutOrDamagedFileGivesADocumentThatWasOrAReason) {
     }
     EXPECT_GT(read_well, 200u);
     EXPECT_GT(refused, 5u) << "of a file without its document nothing is left";
+}
+
+TEST_F(JournalTest, HoldsEditsOfASceneWithoutACamera) {
+    json scene = document();
+    scene.erase("camera");
+    run("scene.load", {{"scene", scene}});
+    add_box({0, 1, 0});
+    run("scene.settings", {{"title", "T"}});
+    add_box({1, 1, 0});
+    run("scene.settings", {{"camera", {{"position", {1, 2, 3}}, {"target", {0, 0, 0}}}}});
+    run("edit.undo");
+    add_box({2, 1, 0});
+    EXPECT_EQ(kept(), document());
+}
+
+// A limit of the size of files stands for a full disk.
+TEST_F(JournalTest, AFullDiskLosesNothingThatWasKept) {
+    for (int i = 0; i < 20; ++i) add_box({0.1 * i, 1, 0});
+    const json before = document();
+    rlimit usual{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
+    const auto ignored = signal(SIGXFSZ, SIG_IGN);
+    const auto set_room = [&usual](rlim_t bytes) {
+        const rlimit limit{bytes, usual.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    };
+    session_->take_events();
+    // The first line is written in part; then there is no room for a new file, either.
+    set_room(fs::file_size(files().at(0)) + 20);
+    add_box({9, 1, 0});
+    set_room(64);
+    add_box({10, 1, 0});
+    std::size_t told = 0;
+    for (const json& event : session_->take_events().messages) told += event["event"] == "message" ? 1 : 0;
+    EXPECT_EQ(told, 1u);
+    EXPECT_EQ(run("hello")["kept"], false);
+    EXPECT_EQ(kept()["entities"], before["entities"]) << "what was on disk is on disk";
+
+    // With room again all is written.
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &usual), 0);
+    (void)signal(SIGXFSZ, ignored);
+    add_box({11, 1, 0});
+    EXPECT_EQ(run("hello")["kept"], true);
+    EXPECT_EQ(kept(), document());
+}
+
+TEST_F(JournalTest, WhatIsBehindADamagedLineIsKeptAndTold) {
+    for (int i = 0; i < 10; ++i) add_box({0.1 * i, 1, 0});
+    session_.reset();
+    const fs::path file = files().at(0);
+    std::string text = content_of(file);
+    const std::size_t end = text.rfind('\n', text.size() - 2);
+    text[text.rfind('\n', end - 1) + 30] ^= 1;
+    std::ofstream(file, std::ios::binary) << text;
+    session_ = make();
+    session_->take_events();
+    run("scene.load", {{"name", run("hello")["recovered"][0]["name"]}});
+    EXPECT_EQ(session_->document().entities.size(), 9u);
+    bool is_told = false;
+    for (const json& event : session_->take_events().messages)
+        is_told = is_told || event.value("text", "").find("1 edits behind a damaged line") != std::string::npos;
+    EXPECT_TRUE(is_told);
+    EXPECT_EQ(content_of(file.string() + ".damaged"), text);
+    // It does not come up again by itself.
+    EXPECT_EQ(run("hello")["recovered"].size(), 0u);
+}
+
+TEST_F(JournalTest, TwoProgramsInOneFolderKeepAJournalEach) {
+    const std::unique_ptr<Session> first = std::move(session_);
+    session_ = make();
+    const json box = {{"entity", {{"shape", {{"type", "sphere"}, {"radius", 0.2}}}}}};
+    ASSERT_TRUE(first->execute("entity.add", box).ok());
+    ASSERT_TRUE(session_->execute("entity.add", box).ok());
+    EXPECT_EQ(files().size(), 2u);
+    EXPECT_TRUE(run("hello")["recovered"].empty()) << "both are in use";
+}
+
+TEST_F(JournalTest, ForeignFilesInTheFolderAreLeftOut) {
+    fs::create_directories(folder());
+    ASSERT_EQ(mkfifo((folder() / "pipe.journal").c_str(), 0600), 0);
+    for (const char* head : {R"({"embody_journal": "one"})", R"({"embody_journal": 1, "edits": "many"})", "[]", ""})
+        std::ofstream(folder() / (std::to_string(std::string(head).size()) + ".journal")) << head << "\n";
+    EXPECT_EQ(run("hello")["recovered"], json::array());
+    add_box({0, 1, 0});
+    EXPECT_EQ(run("hello")["kept"], true);
 }
 
 TEST_F(JournalTest, IsARecoveryOnceItsSessionHasEnded) {

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 TEST(Limits, ManyStepsEndWhereTheOwnerSaysSo) {
     int asked = 0;
-    auto session = Session::create(nullptr, {"saved", "demo", [&asked] { return ++asked > 3; }});
+    auto session = Session::create(nullptr, {{}, {}, [&asked] { return ++asked > 3; }});
     ASSERT_TRUE(session.ok());
     ASSERT_TRUE((*session)->execute("simulation.step", {{"count", 100}}).ok());
     EXPECT_EQ((*session)->simulated_steps(), 3U);
@@ -22,7 +22,7 @@ TEST(Limits, ManyStepsEndWhereTheOwnerSaysSo) {
 }
 
 TEST(Limits, VeryManyActionsOfOneCommandAreNotAllTold) {
-    auto session = Session::create(nullptr, {"saved", "demo"});
+    auto session = Session::create(nullptr, {});
     ASSERT_TRUE(session.ok());
     const json action = {{"trigger", {{"type", "time"}, {"time", 0}, {"repeat_every", 1e-5}}},
                          {"receiver", {{"index", 1}}},

@@ -81,6 +81,88 @@ TEST_F(PeopleTest, TwoWhoDragAtOnceMakeTwoSteps) {
     EXPECT_EQ(where(other).x, 2);
 }
 
+// A drag whose things change while others delete, rename or move one of them.
+TEST_F(PeopleTest, ADragThatLosesAThingToSomebodyIsTwoSteps) {
+    for (const char* act : {"deletes", "renames", "moves"}) {
+        session_ = make();
+        meet(ann, "Ann");
+        meet(ben, "Ben");
+        const EntityIndex one = add(ann, {0, 1, 0}), two = add(ann, {2, 1, 0});
+        const json both = {
+            {"merge", "drag"},
+            {"poses", {{{"index", one}, {"position", {1, 1, 0}}}, {{"index", two}, {"position", {3, 1, 0}}}}}};
+        run("entity.transform", both, ann);
+        if (act == std::string("deletes")) run("entity.remove", {{"indices", {two}}}, ben);
+        if (act == std::string("renames")) run("entity.update", {{"index", two}, {"entity", {{"name", "Ben's"}}}}, ben);
+        if (act == std::string("moves")) move(ben, two, 9);
+        move(ann, one, 5, "drag");
+        undone(ann);
+        EXPECT_EQ(where(one).x, 1) << act << ": the drag after Ben's edit is a step of its own";
+        const auto rest = session_->execute("edit.undo", json::object(), ann);
+        EXPECT_EQ(rest.ok(), act == std::string("renames")) << act;
+        if (act == std::string("moves")) {
+            EXPECT_EQ(where(two).x, 9) << "Ben's move stays";
+        }
+    }
+}
+
+TEST_F(PeopleTest, ARefusedStepDoesNotHoldUpTheStepsBeforeIt) {
+    meet(ann, "Ann");
+    meet(ben, "Ben");
+    const EntityIndex lamp = add(ann, {5, 1, 0}), box = add(ann, {0, 1, 0});
+    move(ann, lamp, 6);
+    move(ann, box, 1);
+    move(ben, box, 2);
+    EXPECT_NE(error_of("edit.undo", json::object(), ann), "accepted");
+    EXPECT_EQ(undone(ann), "Move Box") << "the lamp, whose name is Box";
+    EXPECT_EQ(where(lamp).x, 5);
+    EXPECT_EQ(where(box).x, 2);
+    undone(ben);
+    EXPECT_EQ(undone(ann), "Move Box 2") << "it can be taken back again";
+    EXPECT_EQ(where(box).x, 0);
+}
+
+TEST_F(PeopleTest, AMergedStepIsRedoneAsItWasDone) {
+    meet(ann, "Ann");
+    const EntityIndex box = add(ann, {0, 1, 0});
+    move(ann, box, 1, "m");
+    run("entity.update", {{"index", box}, {"merge", "m"}, {"entity", {{"name", "Crate"}}}}, ann);
+    move(ann, box, 5, "m");
+    const json before = document();
+    undone(ann);
+    EXPECT_EQ(where(box).x, 0);
+    redone(ann);
+    EXPECT_EQ(document(), before);
+}
+
+TEST_F(PeopleTest, UndoPassesNoLock) {
+    meet(ann, "Ann");
+    meet(ben, "Ben");
+    const EntityIndex box = add(ann, {0, 1, 0});
+    move(ann, box, 1);
+    run("entity.lock", {{"indices", {box}}, {"locked", true}}, ben);
+    EXPECT_NE(error_of("edit.undo", json::object(), ann).find("is locked"), std::string::npos);
+    EXPECT_EQ(where(box).x, 1);
+    EXPECT_NE(error_of("entity.update", {{"index", box}, {"entity", {{"enabled", false}}}}), "accepted");
+    undone(ben);
+    EXPECT_EQ(undone(ann), "Move Box");
+}
+
+TEST_F(PeopleTest, AConnectionIsOnePerson) {
+    meet(ann, "Ann");
+    add(ann, {0, 1, 0});
+    EXPECT_NE(error_of("hello", {{"person", "Ben's page"}}, ann).find("another person already"), std::string::npos);
+    meet(ben, "Ben");
+    EXPECT_TRUE(undone(ben).is_null()) << "Ben is not Ann";
+    // However many come and go, who has steps is not forgotten.
+    session_->forget_client(ann);
+    for (ClientId client = 100; client < 2200; ++client) {
+        run("hello", {{"person", "guest " + std::to_string(client)}}, client);
+        session_->forget_client(client);
+    }
+    EXPECT_EQ(run("hello", {{"person", "Ann's page"}}, 50)["undo"], "Add Box");
+}
+
 TEST_F(PeopleTest, UndoKeepsWhatOthersChangedOnTheSameThing) {
     meet(ann, "Ann");
     meet(ben, "Ben");
@@ -327,6 +409,35 @@ TEST_F(PeopleTest, OpeningASceneAsksTheOthers) {
         << "nobody is asked about a scene that is not there";
 }
 
+TEST_F(PeopleTest, AQuestionOpensTheFileAsItIsWhenItIsAnswered) {
+    meet(ann, "Ann");
+    meet(ben, "Ben");
+    add(ann, {0, 1, 0});
+    run("scene.save", {{"name", "Flat"}}, ann);
+    run("scene.new", {{"name", "Draft"}, {"ask", false}}, ann);
+    const json asked = run("scene.load", {{"name", "Flat"}}, ann);
+    add(ben, {1, 1, 0});
+    add(ben, {2, 1, 0});
+    run("scene.save", {{"name", "Flat"}}, ben);
+    const json newest = document();
+
+    // A stranger does not answer, nor does one person twice.
+    run("hello", json::object(), eve);
+    EXPECT_NE(error_of("scene.answer", {{"question", asked["question"]}, {"agrees", false}}, eve).find("not asked"),
+              std::string::npos);
+    run("scene.answer", {{"question", asked["question"]}, {"agrees", true}}, ben);
+    EXPECT_EQ(document(), newest) << "Ben's work";
+    EXPECT_EQ(run("hello", json::object(), eve)["unsaved"], false);
+
+    // A script is told, and edits no other scene than it asked for.
+    EXPECT_NE(error_of("scene.new", json::object(), eve).find("ask: false"), std::string::npos);
+    // Who asked and left wants nothing any more.
+    run("scene.new", {{"name", "Never"}}, ann);
+    session_->forget_client(ann);
+    session_->follow_question(std::chrono::steady_clock::now() + std::chrono::seconds(60));
+    EXPECT_EQ(document()["title"], "Flat");
+}
+
 TEST_F(PeopleTest, LockedThingsKeepPoseSizeAndExistence) {
     const EntityIndex floor = 1, box = add_box({3, 1, 0});
     EXPECT_TRUE(session_->document().find(floor)->locked) << "the floor of a new scene";
@@ -336,7 +447,11 @@ TEST_F(PeopleTest, LockedThingsKeepPoseSizeAndExistence) {
              {"entity.transform", {{"poses", {{{"index", floor}, {"position", {0, 1, 0}}}}}}},
              {"entity.drop_to_floor", {{"indices", {floor}}}},
              {"entity.update", {{"index", floor}, {"entity", {{"pose", {{"position", {0, 1, 0}}}}}}}},
-             {"entity.update", {{"index", floor}, {"entity", {{"shape", {{"type", "sphere"}, {"radius", 1}}}}}}}})
+             {"entity.update", {{"index", floor}, {"entity", {{"shape", {{"type", "sphere"}, {"radius", 1}}}}}}},
+             {"entity.turn", {{"indices", {floor}}, {"angle", 0.1}}},
+             {"entity.move", {{"indices", {floor}}, {"offset", {0, 0.1, 0}}}},
+             {"entity.mirror", {{"indices", {floor, box}}, {"axis", "x"}}},
+             {"entity.drag", {{"indices", {floor}}, {"drop", {{"origin", {0, 3, 0}}, {"direction", {0, -1, 0}}}}}}})
         EXPECT_NE(error_of(command, params).find("Floor is locked (unlock it first)"), std::string::npos)
             << command << ": " << error_of(command, params);
     EXPECT_EQ(document(), before);
@@ -378,8 +493,16 @@ TEST_F(PeopleTest, SavingUnderAnotherNameMakesThatTheTitleAndKeepsTheCamera) {
     EXPECT_EQ(document()["title"], "Our flat") << "a title of one's own stays";
     EXPECT_EQ(run("edit.undo")["undone"], "Change settings");
     EXPECT_EQ(document()["camera"], camera) << "the camera is no step of undo";
+    // What a save gave the scene is not taken back by the undo of an edit before it.
+    run("scene.settings", {{"title", "Mine"}, {"gravity", {0, -3, 0}}});
     run("scene.save", {{"name", "Copy"}});
+    run("edit.undo");
+    EXPECT_EQ(document()["title"], "Copy");
+    EXPECT_EQ(document()["settings"]["gravity"], json({0.0, -9.81, 0.0}));
+    run("edit.redo");
+    EXPECT_EQ(run("hello")["unsaved"], false);
     run("scene.load", {{"name", "Copy"}});
+    EXPECT_EQ(document()["settings"]["gravity"], json({0.0, -3.0, 0.0}));
     EXPECT_EQ(document()["title"], "Copy");
     EXPECT_EQ(document()["camera"], camera);
     EXPECT_NE(error_of("scene.save", {{"camera", {{"position", {0, 0}}}}}).find("camera.position"), std::string::npos);

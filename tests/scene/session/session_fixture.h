@@ -89,19 +89,26 @@ inline nlohmann::json random_command(Random& random, const Document& document, s
         case 4:
             return name = "entity.transform",
                    json{{"poses", {{{"index", any_entity()}, {"position", any_position()}}}}};
-        case 5:
-            return name = "entity.transform",
-                   json{{"merge", "m"}, {"poses", {{{"index", any_entity()}, {"position", any_position()}}}}};
+        case 5: {
+            // A drag of things that change.
+            json poses = {{{"index", any_entity()}, {"position", any_position()}}};
+            const EntityIndex other = any_entity();
+            if (other != poses[0]["index"]) poses.push_back({{"index", other}, {"position", any_position()}});
+            return name = "entity.transform", json{{"merge", "m"}, {"poses", poses}};
+        }
         case 6:
             return name = "entity.update",
                    json{{"index", any_entity()},
+                        {"merge", "m"},
                         {"entity", {{"name", "N"}, {"force", any_position()}, {"enabled", true}}}};
         case 7:
             return name = "entity.update",
                    json{{"index", any_entity()}, {"entity", {{"shape", {{"type", "sphere"}, {"radius", 0.3}}}}}};
         case 8:
-            return name = "entity.set_attribute",
-                   json{{"indices", {any_entity()}}, {"name", "mass"}, {"value", random.between(0.1, 9)}};
+            return name = "entity.set_attribute", json{{"indices", {any_entity(), any_entity()}},
+                                                       {"merge", "m"},
+                                                       {"name", "mass"},
+                                                       {"value", random.between(0.1, 9)}};
         case 9:
             return name = "entity.reset_attribute", json{{"indices", {any_entity()}}, {"name", "mass"}};
         case 10:
@@ -114,7 +121,8 @@ inline nlohmann::json random_command(Random& random, const Document& document, s
             return name = "action.add",
                    json{{"trigger", {{"type", "time"}, {"time", 1}}}, {"effect", {{"type", "pause"}}}};
         case 14:
-            return name = "scene.settings", json{{"gravity", any_position()}, {"title", "T"}};
+            return name = "scene.settings",
+                   json{{"gravity", any_position()}, {"title", "T" + std::to_string(random.below(3))}};
         case 15:
             return name = "entity.drag", json{{"indices", {any_entity(), any_entity()}},
                                               {"drop", {{"origin", any_position()}, {"direction", {0.3, -1, 0.2}}}}};

@@ -74,9 +74,14 @@ Result<Change> read_pose(const json& change, const std::string& where, const Doc
 
 Result<Change> read_heading(const json& change, const std::string& where, const Document& document) {
     std::optional<Error> error;
-    const json fields = change.value("settings", json());
-    FieldReader reader(fields, where + ".settings", error);
+    json fields = change.value("settings", json());
     HeadingChange heading{document, document};
+    // Null: the scene has none.
+    if (fields.is_object() && fields.contains("camera") && fields["camera"].is_null()) {
+        heading.after.camera.reset();
+        fields.erase("camera");
+    }
+    FieldReader reader(fields, where + ".settings", error);
     for_each_field<Heading>([&](const auto& field) {
         if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, physics::WorldSettings>)
             read_field(reader, field, heading.after);

@@ -30,19 +30,21 @@ json presence_event(ClientId client, json presence) {
 }
 
 // Makes the client known, as the person that it says it is.
-Client& greet(SessionState& state, const std::optional<std::string>& person) {
-    const bool was_member = state.people.client(state.client).is_member;
-    Client& client = person ? state.people.meet(state.client, *person) : state.people.client(state.client);
+Result<Client*> greet(SessionState& state, const std::optional<std::string>& person) {
+    Client& client = state.people.client(state.client);
+    const bool was_member = client.is_member;
+    if (person)
+        if (Result<Client*> met = state.people.meet(state.client, *person, state.history); !met.ok()) return met;
     client.is_greeted = true;
     const auto label = [](const Edit* edit) { return edit ? std::optional(edit->label) : std::nullopt; };
     client.undo = label(state.history.undoable(client.person));
     client.redo = label(state.history.redoable(client.person));
-    if (!client.is_member || was_member) return client;
+    if (!client.is_member || was_member) return &client;
     state.tell({{"event", "members"}, {"members", state.people.members()}});
     for (const ClientId other : state.people.others(state.client))
         if (const auto presence = state.people.client(other).presence)
             state.tell_to(state.client, presence_event(other, *presence));
-    return client;
+    return &client;
 }
 
 // Everything that a client needs to draw the scene and to follow it.
@@ -54,7 +56,9 @@ Result<json> hello(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     if (person && (person->empty() || person->size() > max_person_bytes))
         return Error{"person", "must have 1 … " + std::to_string(max_person_bytes) + " bytes"};
-    const Client& client = greet(state, person);
+    const Result<Client*> greeted = greet(state, person);
+    if (!greeted.ok()) return greeted.error();
+    const Client& client = *greeted.value();
 
     // Entities in the world but not in the document, and the reverse.
     json spawned = json::array(), despawned = json::array();
@@ -76,6 +80,7 @@ Result<json> hello(SessionState& state, const json& params) {
                 {"client", state.client},
                 {"members", state.people.members()},
                 {"recovered", recoveries_to_json(state.options)},
+                {"kept", !state.is_unkept},
                 {"spawned", std::move(spawned)},
                 {"despawned", std::move(despawned)},
                 {"waiting", state.simulation->waiting()}};

@@ -43,7 +43,8 @@ Result<Opening> read_named(const SessionState& state, const std::string& name, c
                        .name = recovered.value().scene,
                        .place = file.value().string(),
                        .is_unsaved = true,
-                       .recovery = file.value()};
+                       .recovery = file.value(),
+                       .lost = recovered.value().lost};
     }
     const bool is_version = !version.empty();
     const Result<std::filesystem::path> file =
@@ -70,7 +71,12 @@ Result<Opening> read_opening(const SessionState& state, const json& params, bool
     if (!reader.finish()) return *error;
     if (int{by_name} + int{scene != nullptr} + int{by_text} != 1)
         return Error{"name", "say either a name, the scene itself, or the text of its file"};
-    if (by_name) return read_named(state, name, version);
+    if (by_name) {
+        Result<Opening> opening = read_named(state, name, version);
+        if (opening.ok())
+            opening.value().again = [name, version](const SessionState& now) { return read_named(now, name, version); };
+        return opening;
+    }
 
     // The document is in no file: its fields are fields of this command.
     if (scene) {
