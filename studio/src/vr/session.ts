@@ -197,9 +197,14 @@ export class VrSession {
 
   private update(now: number): void {
     const { stance, parts } = this;
+    // The page may still ask for a picture of its own before the device does.
+    if (!parts.view.renderer.xr.isPresenting || !parts.view.renderer.xr.getFrame()) return;
     const seconds = Math.min(Math.max((now - this.last) / 1000, 0), LONGEST_STEP_S);
     this.last = now;
-    parts.view.renderer.xr.updateCamera(stance.head);
+    const { xr } = parts.view.renderer;
+    xr.updateCamera(stance.head);
+    const [left, right] = xr.getCamera().cameras;
+    if (left) stance.eyes.lerpVectors(left.position, (right ?? left).position, 0.5);
     stance.refresh();
     if (!this.placed) this.place();
     this.hands.update();
@@ -214,7 +219,6 @@ export class VrSession {
     for (const look of this.looks) look.update();
     this.presence.update(now);
     for (const touch of this.touches) touch.update(stance.scale);
-    const { xr } = parts.view.renderer;
     this.room?.update(xr.getFrame(), xr.getReferenceSpace(), seconds);
     stance.feetAt(this.headset.target);
     this.headset.distance = (SHADOW_REACH / 1.4) * Math.min(stance.scale, 4);
@@ -223,14 +227,7 @@ export class VrSession {
   /** The first picture: the user stands on the floor below the desktop's camera and looks where it looked. */
   private place(): void {
     const { stance, parts } = this;
-    const { xr } = parts.view.renderer;
-    const space = xr.getReferenceSpace();
-    const pose = space && xr.getFrame()?.getViewerPose(space);
-    if (!pose) return;
     this.placed = true;
-    const { position, orientation } = pose.transform;
-    stance.head.position.copy(position);
-    stance.head.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w);
     const { camera } = parts.view.rig;
     const settings = parts.preferences.get("vr");
     this.eye.copy(camera.position);

@@ -18,6 +18,8 @@ const LARGEST = 200;
 export class Stance {
   readonly origin = new Group();
   readonly head = new PerspectiveCamera(70, 1, 0.03, 3000);
+  /** The middle between the eyes, in the room; three.js' camera of a headset may be at one of them. */
+  readonly eyes = new Vector3();
   /** How much higher the head is than in the user's room, for whoever sits, m of the room. */
   lift = 0;
   private readonly point = new Vector3();
@@ -40,12 +42,12 @@ export class Stance {
 
   /** The head in the scene. */
   headAt(out: Vector3): Vector3 {
-    return out.copy(this.head.position).applyMatrix4(this.origin.matrixWorld);
+    return out.copy(this.eyes).applyMatrix4(this.origin.matrixWorld);
   }
 
   /** The point of the floor below the head, in the scene. */
   feetAt(out: Vector3): Vector3 {
-    return out.set(this.head.position.x, -this.lift, this.head.position.z).applyMatrix4(this.origin.matrixWorld);
+    return out.set(this.eyes.x, -this.lift, this.eyes.z).applyMatrix4(this.origin.matrixWorld);
   }
 
   /** Where the head looks along the ground, in the scene. */
