@@ -244,7 +244,7 @@ void SceneThread::State::run() {
 void SceneThread::State::follow_others() {
     catalog_due = Clock::now() + catalog_period;
     try {
-        session->follow_question(catalog_due);
+        session->follow_people(catalog_due);
         (void)session->follow_catalog();
         tell_events();
     } catch (const std::exception& thrown) {

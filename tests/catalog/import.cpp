@@ -53,7 +53,9 @@ TEST_F(ImportTest, WantedModelsComeFirst) {
         write_model(std::string(1, letter) + ".obj", std::string(3, letter));
     std::vector<std::string> names;
     const PrepareModels prepare = [&](const std::vector<ImportItem>& items, const auto& done) {
-        for (const ImportItem& item : items) names.push_back(item.name);
+        // Models that may be in another unit are prepared once more; the order is that of the first time.
+        if (names.empty())
+            for (const ImportItem& item : items) names.push_back(item.name);
         return prepare_boxes(items, done);
     };
     const auto all = import({models()}, {}, prepare);

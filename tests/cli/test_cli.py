@@ -613,9 +613,9 @@ class Server(unittest.TestCase):
         with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api/health", timeout=60) as answer:
             return json.load(answer)
 
-    def test_without_models_the_studio_opens_an_empty_scene(self):
+    def test_without_models_the_studio_opens_its_first_scene_all_the_same(self):
         health = self.health()
-        self.assertEqual((health["name"], health["scene"]), ("embody", "Untitled"))
+        self.assertEqual((health["name"], health["scene"]), ("embody", "Furnished room"))
 
     def test_a_file_that_is_too_large_is_refused_with_a_reason(self):
         client = socket.create_connection(("127.0.0.1", self.port), timeout=60)

@@ -205,11 +205,14 @@ describe("building in a room", { timeout: 900000 }, () => {
     for (const x of [-1, 0, 1]) boxes.push((await session.command("entity.add", { entity: { name: `Box ${x}`, shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [x, 0.2, 0] } } })).index);
     await drawn(6);
     const seen = (index) => page.evaluate((index) => window.embody.seenAt(index), index);
-    const [first, second] = [await seen(boxes[0]), await seen(boxes[1])];
+    const first = await seen(boxes[0]);
     await page.mouse.click(first.x, first.y);
+    await page.waitForFunction((index) => window.embody.selection().includes(index), boxes[0]);
+    const second = await seen(boxes[1]);
     await page.keyboard.down("Shift");
     await page.mouse.click(second.x, second.y);
     await page.keyboard.up("Shift");
+    await page.waitForFunction((index) => window.embody.selection().includes(index), boxes[1]);
     await page.keyboard.press("Control+g");
     await page.getByTestId("tab-In the scene").click();
     await page.locator('[data-group="Group"]').waitFor();

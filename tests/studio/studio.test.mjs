@@ -183,6 +183,8 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
 
   it("pulls a body with the mouse while the scene plays", async () => {
     const box = await dragIn(page.getByTestId("primitive-box"));
+    // A hand is as strong as an arm: it lifts no solid box of 125 kg.
+    await session.command("entity.set_attribute", { indices: [box.index], name: "mass", value: 5 });
     await page.getByTestId("simulation.play").click();
     await page.waitForFunction(() => window.embody.simulation().state === "playing");
     const at = await page.evaluate((index) => window.embody.seenAt(index), box.index);

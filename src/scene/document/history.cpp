@@ -10,7 +10,9 @@ namespace embody::scene {
 
 namespace {
 
+/// Edits that each person can undo, and all together.
 constexpr std::size_t max_edits = 1000;
+constexpr std::size_t max_edits_of_all = 10 * max_edits;
 /// Up to this many entities that come or go in a row are inserted or erased one by one.
 constexpr std::size_t few_entities = 4;
 
@@ -275,8 +277,17 @@ void History::add(Edit edit) {
     note(edit, true);
     edit.time = clock_;
     merging_[edit.person] = edit.mark;
+    const PersonId person = edit.person;
     done_.push_back(std::move(edit));
-    if (done_.size() > max_edits) done_.pop_front();
+    const auto is_own = [person](const Edit& one) { return one.person == person; };
+    if (std::count_if(done_.begin(), done_.end(), is_own) > static_cast<std::ptrdiff_t>(max_edits))
+        done_.erase(std::find_if(done_.begin(), done_.end(), is_own));
+    if (done_.size() > max_edits_of_all) done_.pop_front();
+}
+
+void History::forget(PersonId person) {
+    undone_.erase(person);
+    merging_.erase(person);
 }
 
 void History::move_back(PersonId person, std::vector<Change> changes) {

@@ -100,6 +100,8 @@ public:
     void move_back(PersonId person, std::vector<Change> changes);
     void move_forward(PersonId person, std::vector<Change> changes);
     void clear();
+    /// The person will not come back: what could be redone is dropped.
+    void forget(PersonId person);
 
     /// Call after the person's edit, an act on the catalogue, was undone by this batch.
     void move_back(PersonId person, std::int64_t batch);

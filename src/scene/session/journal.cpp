@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
@@ -112,6 +113,17 @@ std::vector<fs::path> journals_in(const fs::path& folder) {
     return files;
 }
 
+// Keeps the newest. By the times of the files: reading them would take long.
+void remove_oldest(const fs::path& folder) {
+    std::vector<std::pair<fs::file_time_type, fs::path>> files;
+    std::error_code ignored;
+    for (const fs::path& file : journals_in(folder)) files.emplace_back(fs::last_write_time(file, ignored), file);
+    if (files.size() <= kept_recoveries) return;
+    std::sort(files.begin(), files.end(), std::greater<>());
+    for (std::size_t i = kept_recoveries; i < files.size(); ++i)
+        if (!is_held(files[i].second)) fs::remove(files[i].second, ignored);
+}
+
 // A name that no other file has, nor one that another program makes in the same second.
 fs::path free_file(const fs::path& folder, const std::string& name, std::string time) {
     std::erase(time, ':');
@@ -136,11 +148,7 @@ bool apply_edit(Document& document, const json& edit) {
 
 Result<std::unique_ptr<Journal>> Journal::begin(const fs::path& folder, const std::string& scene,
                                                 const Document& document) {
-    const std::vector<Recovery> recoveries = list_recoveries(folder);
-    for (std::size_t i = kept_recoveries; i < recoveries.size(); ++i) {
-        std::error_code ignored;
-        fs::remove(recoveries[i].file, ignored);
-    }
+    remove_oldest(folder);
     std::unique_ptr<Journal> journal(new Journal);
     journal->scene_ = scene;
     journal->started_ = utc_text(std::chrono::system_clock::now());

@@ -62,6 +62,10 @@ bool People::leave(ClientId id) {
     return was_member;
 }
 
+void People::forget_presences() {
+    for (auto& [id, client] : clients_) client.presence = client.untold = nullptr;
+}
+
 // The first colour that the fewest members have.
 std::string People::free_color() const {
     const auto uses = [this](const char* color) {

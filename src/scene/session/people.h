@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -23,6 +24,8 @@ struct Client {
     std::string name;
     std::string color;                               ///< of a member, "#rrggbb"
     std::shared_ptr<const nlohmann::json> presence;  ///< what client.present told last; null: nothing
+    std::shared_ptr<const nlohmann::json> untold;    ///< what the others have not been told of it yet
+    std::chrono::steady_clock::time_point told_at;   ///< when they were told last
     std::optional<std::string> undo, redo;           ///< labels that it was told last
 };
 
@@ -39,6 +42,8 @@ public:
 
     [[nodiscard]] const std::map<ClientId, Client>& clients() const { return clients_; }
     [[nodiscard]] std::map<ClientId, Client>& clients() { return clients_; }
+    /// Another scene is open: nobody is anywhere in it yet.
+    void forget_presences();
     /// The other members.
     [[nodiscard]] std::vector<ClientId> others(ClientId id) const;
     /// For people: the client's name, or "Studio 3".

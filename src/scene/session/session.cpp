@@ -8,6 +8,7 @@
 #include "scene/file/whole_file.h"
 #include "scene/session/catalog_edit.h"
 #include "scene/session/commands/commands.h"
+#include "scene/session/presence.h"
 #include "scene/session/scene_folders.h"
 #include "scene/session/session_state.h"
 
@@ -70,12 +71,18 @@ Result<json> Session::execute(const std::string& command, const json& params, Cl
 
 void Session::forget_client(ClientId client) {
     state_->forget_hands(client);
+    const auto known = state_->people.clients().find(client);
+    if (known != state_->people.clients().end() && !known->second.is_member)
+        state_->history.forget(known->second.person);
     if (!state_->people.leave(client)) return;
     state_->tell({{"event", "members"}, {"members", state_->people.members()}});
     scene::follow_question(*state_, std::chrono::steady_clock::now());
 }
 
-void Session::follow_question(std::chrono::steady_clock::time_point now) { scene::follow_question(*state_, now); }
+void Session::follow_people(std::chrono::steady_clock::time_point now) {
+    scene::follow_question(*state_, now);
+    tell_presences(*state_, now);
+}
 
 bool Session::follow_catalog() {
     const bool has_changed = follow_changes_of_others(*state_);

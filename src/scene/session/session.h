@@ -63,8 +63,9 @@ public:
     Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params, ClientId client = 0);
     /// A client has left.
     void forget_client(ClientId client);
-    /// Opens the scene that members were asked about, once their time to answer is over; for a timer.
-    void follow_question(std::chrono::steady_clock::time_point now);
+    /// Opens the scene that members were asked about, once their time to answer is over, and tells presences that came
+    /// too fast; for a timer.
+    void follow_people(std::chrono::steady_clock::time_point now);
     /// Applies other programs' changes of the catalogue, and takes in what waited for models that have come; returns
     /// whether there was anything. For a timer.
     bool follow_catalog();

@@ -293,6 +293,7 @@ Result<void> SessionState::open(Document opened, std::string opened_name, bool i
     const json changes = json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}});
     if (is_unsaved) keep(changes);
     tell_document(changes);
+    people.forget_presences();
     told_waiting.clear();
     tell_waiting_models();
     tell(simulation_event());

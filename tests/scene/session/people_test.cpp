@@ -362,6 +362,37 @@ TEST_F(PeopleTest, PresenceIsToldToTheOtherMembersOnly) {
     EXPECT_EQ(told(4, "presence")[0]["mode"], "headset");
 }
 
+TEST_F(PeopleTest, PresenceThatComesFasterIsToldTogether) {
+    meet(ann, "Ann");
+    meet(ben, "Ben");
+    listen();
+    for (int i = 0; i < 1000; ++i) run("client.present", {{"selection", json::array({i + 1})}}, ann);
+    run("client.present", {{"mode", "headset"}}, ann);
+    listen();
+    const std::size_t at_once = told(ben, "presence").size();
+    EXPECT_LT(at_once, 100u) << "20 a second, and the machine may be busy";
+    session_->follow_people(std::chrono::steady_clock::now() + std::chrono::seconds(1));
+    listen();
+    ASSERT_EQ(told(ben, "presence").size(), 1u);
+    EXPECT_EQ(told(ben, "presence")[0]["selection"], json::array({1000}));
+    EXPECT_EQ(told(ben, "presence")[0]["mode"], "headset");
+    session_->follow_people(std::chrono::steady_clock::now() + std::chrono::seconds(2));
+    listen();
+    EXPECT_TRUE(told(ben, "presence").empty());
+}
+
+TEST_F(PeopleTest, ManyEditsOfOnePersonLeaveTheOthersTheirs) {
+    meet(ann, "Ann");
+    meet(ben, "Ben");
+    add(ann, {0, 1, 0});
+    const EntityIndex box = add(ben, {3, 1, 0});
+    for (int i = 0; i < 1100; ++i) move(ben, box, 0.001 * i);
+    EXPECT_EQ(undone(ann), "Add Box");
+    std::size_t steps = 0;
+    while (!undone(ben).is_null()) ++steps;
+    EXPECT_EQ(steps, 1000u);
+}
+
 TEST_F(PeopleTest, OpeningASceneAsksTheOthers) {
     meet(ann, "Ann");
     add(ann, {0, 1, 0});
@@ -399,9 +430,9 @@ TEST_F(PeopleTest, OpeningASceneAsksTheOthers) {
     session_->forget_client(eve);
     EXPECT_EQ(document()["title"], "Agreed");
     run("scene.new", {{"name", "Silence"}}, ann);
-    session_->follow_question(std::chrono::steady_clock::now() + std::chrono::seconds(19));
+    session_->follow_people(std::chrono::steady_clock::now() + std::chrono::seconds(19));
     EXPECT_EQ(document()["title"], "Agreed");
-    session_->follow_question(std::chrono::steady_clock::now() + std::chrono::seconds(21));
+    session_->follow_people(std::chrono::steady_clock::now() + std::chrono::seconds(21));
     EXPECT_EQ(document()["title"], "Silence");
     run("scene.new", {{"name", "At once"}, {"ask", false}}, ann);
     EXPECT_EQ(document()["title"], "At once");
@@ -434,7 +465,7 @@ TEST_F(PeopleTest, AQuestionOpensTheFileAsItIsWhenItIsAnswered) {
     // Who asked and left wants nothing any more.
     run("scene.new", {{"name", "Never"}}, ann);
     session_->forget_client(ann);
-    session_->follow_question(std::chrono::steady_clock::now() + std::chrono::seconds(60));
+    session_->follow_people(std::chrono::steady_clock::now() + std::chrono::seconds(60));
     EXPECT_EQ(document()["title"], "Flat");
 }
 

@@ -8,6 +8,7 @@
 #include "scene/file/scene_file.h"
 #include "scene/session/catalog_edit.h"
 #include "scene/session/commands/commands.h"
+#include "scene/session/presence.h"
 #include "scene/session/scene_folders.h"
 
 namespace embody::scene {
@@ -23,12 +24,6 @@ constexpr std::size_t max_person_bytes = 64;
 constexpr std::size_t max_told_selection = 1000;
 constexpr std::size_t max_hands = 2;
 
-json presence_event(ClientId client, json presence) {
-    presence["event"] = "presence";
-    presence["client"] = client;
-    return presence;
-}
-
 // Makes the client known, as the person that it says it is.
 Result<Client*> greet(SessionState& state, const std::optional<std::string>& person) {
     Client& client = state.people.client(state.client);
@@ -41,9 +36,7 @@ Result<Client*> greet(SessionState& state, const std::optional<std::string>& per
     client.redo = label(state.history.redoable(client.person));
     if (!client.is_member || was_member) return &client;
     state.tell({{"event", "members"}, {"members", state.people.members()}});
-    for (const ClientId other : state.people.others(state.client))
-        if (const auto presence = state.people.client(other).presence)
-            state.tell_to(state.client, presence_event(other, *presence));
+    tell_presences_of_others(state);
     return &client;
 }
 
@@ -183,13 +176,9 @@ Result<json> present(SessionState& state, const json& params) {
         told["mode"] = mode;
     }
     if (!reader.finish()) return *error;
-    Client& client = state.people.client(state.client);
-    if (!client.is_member) return Error{"client.present", "is for members", "say hello with a person first"};
-    json whole = client.presence ? *client.presence : json::object();
-    whole.update(told);
-    client.presence = std::make_shared<const json>(std::move(whole));
-    const json event = presence_event(state.client, std::move(told));
-    for (const ClientId other : state.people.others(state.client)) state.tell_to(other, event);
+    if (!state.people.client(state.client).is_member)
+        return Error{"client.present", "is for members", "say hello with a person first"};
+    take_presence(state, told, std::chrono::steady_clock::now());
     return json::object();
 }
 

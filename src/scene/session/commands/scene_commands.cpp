@@ -140,6 +140,9 @@ Result<json> save(SessionState& state, const json& params) {
     Result<void> written = has_version ? save_document(state.document, copy) : Result<void>{};
     if (written.ok()) written = save_document(state.document, *file);
     if (!written.ok()) {
+        // A version of a scene that is not saved would be in the way of the next try.
+        std::error_code ignored;
+        if (has_version) std::filesystem::remove(copy, ignored);
         static_cast<Heading&>(state.document) = std::move(before);
         return written.error();
     }
