@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Fails where a command of a session is not in docs/protocol.md, or where that file or the Studio's types name a command that does not exist.
 
-Commands are the rows {"family.verb", function} in src/scene/session/commands and src/server.
+Commands are the rows {"family.verb", function, need} in src/scene/session/commands and src/server.
 """
 import pathlib
 import re
@@ -18,7 +18,7 @@ def main() -> int:
     known = set()
     for folder in ("src/scene/session/commands", "src/server"):
         for file in sorted((ROOT / folder).rglob("*.cpp")):
-            known.update(re.findall(rf'\{{"{NAME}",\s*&?\w+\}}', file.read_text()))
+            known.update(re.findall(rf'\{{"{NAME}",\s*&?\w+(?:,\s*Need::\w+)?\}}', file.read_text()))
             known.update(re.findall(rf'command == "{NAME}"', file.read_text()))
     text = (ROOT / PROTOCOL).read_text()
     rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]

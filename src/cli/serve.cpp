@@ -54,13 +54,14 @@ Result<std::optional<server::CertificateFiles>> certificate_of(const ServeArgume
 void print_addresses(const server::Server& server, const ServeArguments& arguments,
                      const server::ServerOptions& options) {
     print_text("Studio: {}\n", server.url());
-    const std::vector<std::string> others = server.urls_for_others();
+    const std::vector<server::Server::Addresses> others = server.urls_for_others();
     if (!others.empty()) print_text("On other machines and headsets of this network:\n");
-    for (const std::string& url : others) print_text("    {}\n", url);
+    for (const auto& [build, run, look] : others)
+        print_text("    {}\n    {} (look and play)\n    {} (look)\n", build, run, look);
     const bool is_terminal = isatty(STDOUT_FILENO) != 0;
     if (arguments.qr || (is_terminal && !others.empty())) {
         const QrColors colors = is_terminal ? QrColors::dark_on_light : QrColors::of_the_terminal;
-        write_text(stdout, qr_code(others.empty() ? server.url() : others.front(), colors));
+        write_text(stdout, qr_code(others.empty() ? server.url() : others.front().build, colors));
     }
     if (options.certificate && arguments.certificate.empty()) {
         const auto print = server::fingerprint(options.certificate->certificate);

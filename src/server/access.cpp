@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "server/access.h"
 
+#include <random>
 #include <string_view>
 
 namespace embody::server {
@@ -26,6 +27,13 @@ bool equal_secrets(std::string_view a, std::string_view b) {
         difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(i < b.size() ? b[i] : 0);
     }
     return difference == 0;
+}
+
+std::string random_token() {
+    std::random_device device;
+    std::string token;
+    for (int i = 0; i < 32; ++i) token.push_back("0123456789abcdef"[device() % 16]);
+    return token;
 }
 
 std::string cookie_value(std::string_view cookies, std::string_view name) {
@@ -64,11 +72,17 @@ Access check_access(const AccessRules& rules, const HttpRequest& request, bool i
         const std::string site = request.origin.empty() ? request.fetch_site : request.origin;
         return {false, "pages of another site (" + site + ") may not use this server"};
     }
-    if (rules.token.empty()) return {true, {}};
-    if (equal_secrets(rules.token, query_parameter(request.target, "token")) ||
-        equal_secrets(rules.token, cookie_value(request.cookie, token_cookie)))
-        return {true, {}};
+    if (rules.invitations.empty()) return {true, {}};
+    // The address goes before what an earlier visit left.
+    for (const std::string& known :
+         {query_parameter(request.target, "token"), cookie_value(request.cookie, token_cookie)})
+        for (const Invitation& invitation : rules.invitations)
+            if (equal_secrets(invitation.token, known)) return {true, {}, invitation.rights, invitation.token};
     return {false, "the address must end with ?token=… as printed when the server started"};
+}
+
+std::vector<Invitation> new_invitations() {
+    return {{random_token(), {}}, {random_token(), {false, true, false}}, {random_token(), {false, false, false}}};
 }
 
 HttpResponse answer_without_tls(const HttpRequest& request) {

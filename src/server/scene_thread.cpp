@@ -8,6 +8,7 @@
 #include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "catalog/catalog.h"
@@ -39,12 +40,14 @@ json failed(const json& id, const Error& error) {
         {"id", id}, {"ok", false}, {"error", {{"where", error.where}, {"why", error.why}, {"remedy", error.remedy}}}};
 }
 
-/// A client's command, or the news that it has left, or a request for the document (then only `take_document` is set).
+/// A client's command, or the news that it has come or left, or a request for the document (then only `take_document`
+/// is set).
 struct Message {
     ClientId client = 0;
     std::string text;
     std::function<void(scene::Document)> take_document;
     bool left = false;
+    std::optional<scene::Rights> admitted = {};
 };
 
 }  // namespace
@@ -131,6 +134,14 @@ void SceneThread::post(ClientId client, std::string message) {
     {
         const std::lock_guard lock(state_->mutex);
         state_->messages.push_back({client, std::move(message), nullptr, false});
+    }
+    state_->changed.notify_all();
+}
+
+void SceneThread::admit(ClientId client, scene::Rights rights) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->messages.push_back({client, {}, nullptr, false, rights});
     }
     state_->changed.notify_all();
 }
@@ -317,6 +328,7 @@ void SceneThread::State::tell_statistics(Clock::time_point now) {
 
 void SceneThread::State::handle(const Message& message) {
     if (message.take_document) return message.take_document(session->document());
+    if (message.admitted) return session->admit(message.client, *message.admitted);
     if (message.left) {
         debug.forget(message.client);
         session->forget_client(message.client);
@@ -365,7 +377,10 @@ json SceneThread::State::execute(const json& request) {
     }
     auto result = session->execute(command.get<std::string>(), params, served);
     if (!result) return failed(id, result.error());
-    if (command == "hello" && options.greeting) result->update(options.greeting());
+    if (command == "hello" && options.greeting) {
+        const json& rights = (*result)["rights"];
+        result->update(options.greeting({rights["edit"], rights["run"], rights["invite"]}));
+    }
     return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
 }
 

@@ -22,8 +22,9 @@ struct SceneThreadOptions {
     std::filesystem::path database;  ///< the thread opens a Catalog of its own
     std::filesystem::path taxonomy_folder;
     scene::SessionOptions session;
-    /// What the transport adds to the answer to `hello`; called on the scene thread. May be empty.
-    std::function<nlohmann::json()> greeting = {};
+    /// What the transport adds to the answer to the `hello` of a client with these rights; called on the scene thread.
+    /// May be empty.
+    std::function<nlohmann::json(const scene::Rights&)> greeting = {};
     std::string open_scene;  ///< name of a saved or demo scene, or a path; empty: an empty scene
 };
 
@@ -46,6 +47,9 @@ public:
 
     /// A text message of a client, unparsed. Exactly one reply will follow.
     void post(ClientId client, std::string message);
+
+    /// What a client may do; before its first message.
+    void admit(ClientId client, scene::Rights rights);
 
     /// Forgets a client that has left, and its user's name.
     void forget(ClientId client);

@@ -94,13 +94,6 @@ struct Shared {
     std::unique_ptr<LibraryFill> fill;
 };
 
-std::string random_token() {
-    std::random_device device;
-    std::string token;
-    for (int i = 0; i < 32; ++i) token.push_back("0123456789abcdef"[device() % 16]);
-    return token;
-}
-
 void report_failure(const std::exception& thrown) {
     std::fprintf(stderr, "embody: a connection failed: %s\n", printable(thrown.what()).c_str());
 }
@@ -172,11 +165,12 @@ using SharedText = std::shared_ptr<const std::string>;
 
 class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
 public:
-    WebSocketClient(Stream&& stream, Shared& shared, ConnectionBook::Place place)
+    WebSocketClient(Stream&& stream, Shared& shared, ConnectionBook::Place place, scene::Rights rights)
         : stream_(std::move(stream)),
           shared_(shared),
           place_(std::move(place)),
           id_(shared.next_client++),
+          rights_(rights),
           watch_(shared.io) {}
     WebSocketClient(const WebSocketClient&) = delete;
     WebSocketClient& operator=(const WebSocketClient&) = delete;
@@ -197,6 +191,7 @@ public:
         stream_.async_accept(request, [self = shared_from_this()](error_code error) {
             if (error) return;
             self->shared_.clients[self->id_] = self;
+            self->shared_.scene->admit(self->id_, self->rights_);
             self->guarded([&] {
                 self->read();
                 self->send_frame();
@@ -353,6 +348,7 @@ private:
     Shared& shared_;
     ConnectionBook::Place place_;
     ClientId id_;
+    scene::Rights rights_;  ///< by the address that it came by
     beast::flat_buffer buffer_;
     std::deque<std::size_t> waiting_;  ///< sizes of the commands that have no reply yet
     std::size_t waiting_bytes_ = 0;    ///< their total
@@ -422,7 +418,12 @@ private:
         const bool is_page = !upgrade && Routes::is_page(request_);
         const Access access = check_access(shared_.access, request_, is_page);
         if (!access.granted) return refuse(error_response(403, request_.target, access.why));
-        if (upgrade) return become_web_socket();
+        token_ = access.token;
+        if (upgrade) return become_web_socket(access.rights);
+        if (ImportRequests::is_import(request_) && !access.rights.edit)
+            return refuse(error_response(403, request_.target,
+                                         "this address is for looking, not for changing the library",
+                                         "ask for an address for those who build along"));
         if (ImportRequests::is_import(request_)) return begin_upload();
         body_.emplace(std::move(*header_));
         body_->body_limit(largest_other_body);
@@ -435,14 +436,15 @@ private:
         });
     }
 
-    void become_web_socket() {
+    void become_web_socket(scene::Rights rights) {
         if (decoded_path(request_.target) != "/ws")
             return refuse(error_response(404, request_.target, "the WebSocket is at /ws"));
         if (!place_.become_viewer())
             return refuse(error_response(503, request_.target, "too many viewers are connected",
                                          "close some of them, and try again"));
         connection().expires_never();
-        std::make_shared<WebSocketClient>(std::move(stream_), shared_, std::move(place_))->accept(header_->release());
+        std::make_shared<WebSocketClient>(std::move(stream_), shared_, std::move(place_), rights)
+            ->accept(header_->release());
     }
 
     // Uploads -----------------------------------------------------------------------------------------------------
@@ -588,8 +590,8 @@ private:
         for (const auto& [name, value] : protective_headers()) response_->set(name, value);
         for (const auto& [name, value] : answer.headers) response_->set(name, value);
         // The page's first load carries the token in its address; the rest of its requests bring it as a cookie.
-        if (!shared_.access.token.empty() && answer.status < 400 && !query_parameter(request_.target, "token").empty())
-            response_->set("Set-Cookie", std::string(token_cookie) + "=" + shared_.access.token +
+        if (!token_.empty() && answer.status < 400 && !query_parameter(request_.target, "token").empty())
+            response_->set("Set-Cookie", std::string(token_cookie) + "=" + token_ +
                                              "; HttpOnly; SameSite=Strict; Path=/" + (shared_.tls ? "; Secure" : ""));
         response_->keep_alive(keep_alive_);
         response_->content_length(answer.body.size());
@@ -632,6 +634,7 @@ private:
     std::optional<http::request_parser<http::string_body>> body_;
     std::optional<http::request_parser<http::buffer_body>> upload_body_;
     HttpRequest request_;
+    std::string token_;  ///< that it came with
     bool is_head_ = false, keep_alive_ = false;
     unsigned version_ = 11;
     std::shared_ptr<Upload> upload_;
@@ -656,7 +659,9 @@ struct Server::State {
     Result<void> listen(const ServerOptions& options);
     Result<void> use_certificate(const ServerOptions& options);
     Result<void> open_routes(const ServerOptions& options);
-    [[nodiscard]] std::string url_at(const std::string& at) const;
+    [[nodiscard]] std::string url_at(const std::string& at, std::size_t invitation = 0) const;
+    [[nodiscard]] std::vector<std::string> addresses_for_others() const;
+    [[nodiscard]] nlohmann::json invitations() const;
     void accept();
     void accept_later(const error_code& error);
     void welcome(tcp::socket socket);
@@ -698,8 +703,10 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     shared.fill = std::make_unique<LibraryFill>(std::move(fill), options.scene.database, options.scene.taxonomy_folder,
                                                 *shared.imports, listener.broadcast);
     SceneThreadOptions scene_options = options.scene;
-    scene_options.greeting = [&shared] {
-        return nlohmann::json{{"import", shared.fill->state()}, {"server", {{"tls", shared.tls != nullptr}}}};
+    scene_options.greeting = [&state](const scene::Rights& rights) {
+        nlohmann::json about = {{"tls", state.shared.tls != nullptr}};
+        if (rights.invite) about["invitations"] = state.invitations();
+        return nlohmann::json{{"import", state.shared.fill->state()}, {"server", std::move(about)}};
     };
     auto scene = SceneThread::start(scene_options, listener);
     if (!scene) return scene.error();
@@ -748,7 +755,7 @@ Result<void> Server::State::listen(const ServerOptions& options) {
     if (error) return Error{"--address " + options.address, "is not an IP address", "for example 127.0.0.1 or 0.0.0.0"};
     shared.access.loopback_only = ip.is_loopback();
     shared.access.tls = options.certificate.has_value();
-    if (!ip.is_loopback()) shared.access.token = random_token();
+    if (!ip.is_loopback()) shared.access.invitations = new_invitations();
     address = options.address;
     acceptor.emplace(shared.io);
     acceptor->open(ip.is_v6() ? tcp::v6() : tcp::v4(), error);
@@ -861,10 +868,10 @@ void Server::State::request_end() {
     if (shared.upload_queue) shared.upload_queue->request_stop();
 }
 
-std::string Server::State::url_at(const std::string& at) const {
+std::string Server::State::url_at(const std::string& at, std::size_t invitation) const {
     const std::string host = at.find(':') == std::string::npos ? at : "[" + at + "]";
     std::string url = (shared.tls ? "https://" : "http://") + host + ":" + std::to_string(shared.access.port) + "/";
-    if (!shared.access.token.empty()) url += "?token=" + shared.access.token;
+    if (!shared.access.invitations.empty()) url += "?token=" + shared.access.invitations[invitation].token;
     return url;
 }
 
@@ -873,13 +880,31 @@ std::string Server::url() const {
     return state_->url_at(is_any ? "127.0.0.1" : state_->address);
 }
 
-std::vector<std::string> Server::urls_for_others() const {
-    if (state_->shared.access.loopback_only) return {};
-    const bool is_any = state_->address == "0.0.0.0" || state_->address == "::";
-    if (!is_any) return {url()};
-    std::vector<std::string> urls;
-    for (const std::string& address : lan_addresses(state_->address == "::")) urls.push_back(state_->url_at(address));
-    return urls;
+// This machine's addresses in its networks; none where it listens on loopback only.
+std::vector<std::string> Server::State::addresses_for_others() const {
+    if (shared.access.loopback_only) return {};
+    if (address == "0.0.0.0" || address == "::") return lan_addresses(address == "::");
+    return {address};
+}
+
+// For who may invite others: [{rights, urls}…].
+nlohmann::json Server::State::invitations() const {
+    nlohmann::json all = nlohmann::json::array();
+    const std::vector<std::string> addresses = addresses_for_others();
+    if (addresses.empty()) return all;
+    for (std::size_t i = 0; i < shared.access.invitations.size(); ++i) {
+        nlohmann::json urls = nlohmann::json::array();
+        for (const std::string& at : addresses) urls.push_back(url_at(at, i));
+        all.push_back({{"rights", scene::rights_to_json(shared.access.invitations[i].rights)}, {"urls", urls}});
+    }
+    return all;
+}
+
+std::vector<Server::Addresses> Server::urls_for_others() const {
+    std::vector<Addresses> all;
+    for (const std::string& at : state_->addresses_for_others())
+        all.push_back({state_->url_at(at, 0), state_->url_at(at, 1), state_->url_at(at, 2)});
+    return all;
 }
 
 void Server::run() {

@@ -35,8 +35,14 @@ public:
 
     /// The Studio's address, with the token where one is needed.
     [[nodiscard]] std::string url() const;
-    /// Its addresses for other machines, those of this machine's networks; none where it listens on loopback only.
-    [[nodiscard]] std::vector<std::string> urls_for_others() const;
+    /// One of this machine's addresses in its networks, with the token for each kind of guest.
+    struct Addresses {
+        std::string build;  ///< who comes by it may do everything
+        std::string run;    ///< look, play and pull
+        std::string look;
+    };
+    /// For other machines; none where it listens on loopback only.
+    [[nodiscard]] std::vector<Addresses> urls_for_others() const;
     /// Serves until request_stop() or SIGINT or SIGTERM.
     void run();
     /// May be called from any thread.

@@ -15,8 +15,8 @@ HttpRequest request(const std::string& host, const std::string& origin = "") {
     return made;
 }
 
-const AccessRules loopback{true, 8420, ""};
-const AccessRules open_network{false, 8420, "0123456789abcdef"};
+const AccessRules loopback{true, 8420, {}};
+const AccessRules open_network{false, 8420, {{"0123456789abcdef", {}}}};
 
 HttpRequest from_site(const std::string& site, const std::string& mode, const std::string& dest) {
     HttpRequest made = request("127.0.0.1:8420");
@@ -43,7 +43,7 @@ TEST(AccessOnLoopback, ForeignPagesReachNothing) {
 }
 
 TEST(AccessOnLoopback, WithTlsOnlyPagesThatCameByHttpsAreItsOwn) {
-    const AccessRules secured{true, 8420, "", true};
+    const AccessRules secured{true, 8420, {}, true};
     EXPECT_TRUE(check_access(secured, request("localhost:8420", "https://localhost:8420"), false).granted);
     EXPECT_FALSE(check_access(secured, request("localhost:8420", "http://localhost:8420"), false).granted);
     EXPECT_FALSE(check_access(secured, request("evil.example", "https://evil.example"), false).granted);
@@ -98,6 +98,29 @@ TEST(AccessFromTheNetwork, TakesTheTokenFromAddressOrCookie) {
     EXPECT_TRUE(check_access(open_network, by_cookie, false).granted);
     by_cookie.cookie = "not_embody_token=0123456789abcdef";
     EXPECT_FALSE(check_access(open_network, by_cookie, false).granted);
+}
+
+TEST(AccessFromTheNetwork, TheTokenSaysWhatIsAllowed) {
+    const AccessRules rules{false, 8420, new_invitations()};
+    ASSERT_EQ(rules.invitations.size(), 3u);
+    const scene::Rights expected[] = {{true, true, true}, {false, true, false}, {false, false, false}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string& token = rules.invitations[i].token;
+        EXPECT_EQ(token.size(), 32u);
+        HttpRequest asked = request("192.0.2.1:8420");
+        asked.target = "/?token=" + token;
+        const Access access = check_access(rules, asked, false);
+        EXPECT_TRUE(access.granted);
+        EXPECT_EQ(access.rights, expected[i]);
+        EXPECT_EQ(access.token, token);
+        // A browser that was here before by another address: the new one counts.
+        for (const Invitation& earlier : rules.invitations) {
+            asked.cookie = "embody_token=" + earlier.token;
+            EXPECT_EQ(check_access(rules, asked, false).rights, expected[i]);
+        }
+        EXPECT_NE(token, new_invitations()[i].token);
+    }
+    EXPECT_EQ(check_access(loopback, request("localhost:8420"), false).rights, expected[0]);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ describe("the first start", { timeout: 300000 }, () => {
     await untilDrawn(6);
     const other = await openStudio(browser, address);
     await other.getByTestId("library-progress").waitFor();
-    assert.equal(await other.evaluate(() => window.embody.entities().filter((entity) => entity.drawn).length), 6);
+    await other.waitForFunction(() => window.embody.entities().filter((entity) => entity.drawn).length === 6);
     await other.context().close();
 
     await page.keyboard.press("Space");

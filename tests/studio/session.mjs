@@ -30,12 +30,12 @@ export function commandFrom(page, name, params = {}) {
 export class Session {
   page = null;
 
-  /** Starts the program with a scene (the document itself). */
-  async start(scene) {
+  /** Starts the program with a scene (the document itself) and more words. */
+  async start(scene, more = []) {
     this.program = findProgram();
     assert.ok(this.program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
     this.server = new RealServer(this.program, prepareDatabase(this.program));
-    this.address = await this.server.start(scene);
+    this.address = await this.server.start(scene, more);
     this.browser = await openBrowser();
   }
 

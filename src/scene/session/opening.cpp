@@ -50,7 +50,9 @@ Opening end_question(SessionState& state) {
 }  // namespace
 
 Result<json> open_or_ask(SessionState& state, Opening opening, bool may_ask) {
-    const std::vector<ClientId> others = state.people.others(state.client);
+    // Who may only look has no hands in the scene that it would be taken from.
+    std::vector<ClientId> others = state.people.others(state.client);
+    std::erase_if(others, [&state](ClientId other) { return !state.people.client(other).rights.edit; });
     if (!may_ask || others.empty()) {
         if (Result<void> opened = open_now(state, std::move(opening)); !opened.ok()) return opened.error();
         // Another scene is open now: whoever was asked about one would be asked about a scene that has gone.
@@ -104,6 +106,8 @@ Result<void> answer_question(SessionState& state, std::uint64_t number, bool agr
                                            "” was not opened"}});
     return {};
 }
+
+void withdraw_question(SessionState& state) { end_question(state); }
 
 void follow_question(SessionState& state, Clock::time_point now) {
     if (!state.question) return;

@@ -41,6 +41,8 @@ struct Question {
 Result<nlohmann::json> open_or_ask(SessionState& state, Opening opening, bool may_ask);
 /// The command scene.answer of the client whose command is being executed.
 Result<void> answer_question(SessionState& state, std::uint64_t number, bool agrees);
+/// Ends the question that is open; nothing is opened.
+void withdraw_question(SessionState& state);
 /// Opens what was asked about once nobody is left to answer, or the time is over; for a timer and when a member leaves.
 void follow_question(SessionState& state, std::chrono::steady_clock::time_point now);
 

@@ -41,14 +41,28 @@ Result<Client*> People::meet(ClientId id, const std::string& person, const Histo
     met.person = persons_.at(person);
     met.color = free_color();
     met.is_member = true;
+    if (const auto granted = granted_.find(met.person); granted != granted_.end() && !met.rights.invite)
+        met.rights = granted->second;
     return &met;
 }
 
-// Those who are not connected and have nothing to undo or redo.
+std::vector<ClientId> People::grant(ClientId id, bool edit, bool run) {
+    const PersonId person = client(id).person;
+    granted_[person] = {edit, run, false};
+    std::vector<ClientId> changed;
+    for (auto& [other, client] : clients_) {
+        if (client.person != person || client.rights.invite) continue;
+        client.rights = granted_[person];
+        changed.push_back(other);
+    }
+    return changed;
+}
+
+// Those who are not connected, have nothing to undo or redo, and whose rights nobody has changed.
 void People::forget_absent(const History& history) {
     std::erase_if(persons_, [&](const auto& known) {
         const PersonId person = known.second;
-        return !history.undoable(person) && !history.redoable(person) &&
+        return !history.undoable(person) && !history.redoable(person) && !granted_.contains(person) &&
                std::none_of(clients_.begin(), clients_.end(),
                             [person](const auto& other) { return other.second.person == person; });
     });
@@ -98,7 +112,11 @@ std::string People::person_called(PersonId person) const {
 json People::members() const {
     json members = json::array();
     for (const auto& [id, client] : clients_)
-        if (client.is_member) members.push_back({{"client", id}, {"name", called(id)}, {"color", client.color}});
+        if (client.is_member)
+            members.push_back({{"client", id},
+                               {"name", called(id)},
+                               {"color", client.color},
+                               {"rights", rights_to_json(client.rights)}});
     return members;
 }
 

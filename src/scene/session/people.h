@@ -12,6 +12,7 @@
 
 #include "foundation/result.h"
 #include "scene/document/history.h"
+#include "scene/session/rights.h"
 #include "scene/session/session.h"
 
 namespace embody::scene {
@@ -21,6 +22,7 @@ struct Client {
     PersonId person = 0;     ///< whose steps of undo its edits are
     bool is_member = false;  ///< a page of the Studio: it gave a person
     bool is_greeted = false;
+    Rights rights;
     std::string name;
     std::string color;                               ///< of a member, "#rrggbb"
     std::shared_ptr<const nlohmann::json> presence;  ///< what client.present told last; null: nothing
@@ -37,6 +39,9 @@ public:
     /// Makes it a member that is the person of this text, the same as at an earlier connection. The error: it is
     /// another person already, or too many are known.
     Result<Client*> meet(ClientId id, const std::string& person, const History& history);
+    /// Gives a member rights to edit and to run, which its person has also at a later connection. Returns all clients
+    /// of that person.
+    std::vector<ClientId> grant(ClientId id, bool edit, bool run);
     /// Whether it was a member.
     bool leave(ClientId id);
 
@@ -59,6 +64,7 @@ private:
 
     std::map<ClientId, Client> clients_;
     std::map<std::string, PersonId> persons_;  ///< by the text that the page keeps
+    std::map<PersonId, Rights> granted_;       ///< of persons for whom somebody has said it
     PersonId last_person_ = 0;
 };
 

@@ -66,8 +66,12 @@ Result<json> Session::execute(const std::string& command, const json& params, Cl
     // A command without parameters may leave them out.
     static const json nothing = json::object();
     state_->client = client;
+    if (Result<void> allowed = check_rights(*state_, found->second->need, found->second->name); !allowed.ok())
+        return allowed.error();
     return found->second->execute(*state_, params.is_null() ? nothing : params);
 }
+
+void Session::admit(ClientId client, Rights rights) { state_->people.client(client).rights = rights; }
 
 void Session::forget_client(ClientId client) {
     state_->forget_hands(client);

@@ -18,6 +18,7 @@
 #include "physics/inter/debug_draw.h"
 #include "scene/document/document.h"
 #include "scene/matter/moving_points.h"
+#include "scene/session/rights.h"
 
 namespace embody::scene {
 
@@ -61,6 +62,9 @@ public:
 
     /// Executes a command of docs/protocol.md for a client; the value is its `result`.
     Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params, ClientId client = 0);
+    /// Before a client's first command: what it may do, unless a member has said otherwise for its person. Clients that
+    /// nothing was said of may do everything.
+    void admit(ClientId client, Rights rights);
     /// A client has left.
     void forget_client(ClientId client);
     /// Opens the scene that members were asked about, once their time to answer is over, and tells presences that came

@@ -105,10 +105,25 @@ export interface Recovery {
 }
 
 /** A page that is connected; the colour is "#rrggbb". */
+/** What a client may do besides looking. */
+export interface Rights {
+  edit: boolean;
+  run: boolean;
+  /** Say what others may do. */
+  invite: boolean;
+}
+
 export interface Member {
   client: number;
   name: string;
   color: string;
+  rights: Rights;
+}
+
+/** Addresses by which others come, and what they may do then; one for each network of the server's machine. */
+export interface Invitation {
+  rights: Rights;
+  urls: string[];
 }
 
 export interface Hand {
@@ -224,6 +239,8 @@ export interface Hello {
   waiting?: number[];
   /** How far the filling of the library is; null: nothing is, or was, to be filled. */
   import?: LibraryFill | null;
+  /** `invitations` only for who may invite; empty where the server answers nobody but its own machine. */
+  server?: { tls: boolean; invitations?: Invitation[] };
 }
 
 /** Models that the server imports by itself. */
@@ -280,6 +297,7 @@ export interface Commands {
   "catalog.stop": [Record<string, never>, unknown];
   "client.set_name": [{ name: string }, { session: string }];
   "client.present": [Presence, unknown];
+  "client.set_rights": [{ client: number; edit: boolean; run: boolean }, unknown];
   "scene.new": [{ name?: string; ask?: boolean }, Asked];
   "scene.load": [({ name: string; version?: string } | { scene: unknown } | { text: string; file: string }) & { ask?: boolean }, Asked];
   "scene.answer": [{ question: number; agrees: boolean }, unknown];

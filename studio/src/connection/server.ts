@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Signal } from "../signal";
 import type { Connection } from "./connection";
-import type { CatalogEvent, Commands, Hello, LibraryFill, Progress } from "./messages";
+import type { CatalogEvent, Commands, Hello, Invitation, LibraryFill, Progress } from "./messages";
 import type { Notices } from "./notices";
 
 /** The server as panels and tools see it: its commands, its version, and events that are not about the scene. */
@@ -17,6 +17,8 @@ export class Server {
   /** The last of these; null before the first. */
   fill: LibraryFill | null = null;
   version = "";
+  /** Addresses for guests; empty where there are none, or this page may not invite. */
+  invitations: readonly Invitation[] = [];
   /** This page's number on the server. */
   client = 0;
   /** Whether the document has arrived: false until the first answer to hello. */
@@ -61,8 +63,9 @@ export class Server {
   }
 
   /** Takes the answer to hello: the server's version, this page's number, and what the server is importing. */
-  meet({ version, client, import: fill }: Hello): void {
+  meet({ version, client, import: fill, server }: Hello): void {
     this.version = version;
+    this.invitations = server?.invitations ?? [];
     this.client = client;
     this.ready = true;
     this.fill = fill ?? null;

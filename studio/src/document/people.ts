@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-import type { Member, Presence } from "../connection/messages";
+import type { Member, Presence, Rights } from "../connection/messages";
 import { Signal } from "../signal";
+
+/** A page that the server has not greeted yet sends nothing; it need not look as if it might not. */
+const ALL: Rights = { edit: true, run: true, invite: true };
 
 /** Who is in the session, and what each one looks at, points at, selects and holds. Never part of the document. */
 export class People {
@@ -23,6 +26,11 @@ export class People {
 
   get others(): readonly Member[] {
     return this.here.filter(({ client }) => client !== this.client);
+  }
+
+  /** What this page may do. */
+  get rights(): Rights {
+    return this.member(this.client)?.rights ?? ALL;
   }
 
   isSelf({ client }: Member): boolean {
@@ -62,6 +70,13 @@ export class People {
 /** The name to show for a member. */
 export function memberName({ name, client }: Member): string {
   return name || `Guest ${client}`;
+}
+
+/** For people: what somebody with these rights may do. */
+export function rightsText({ edit, run }: Pick<Rights, "edit" | "run">): string {
+  if (edit && run) return "build and play";
+  if (edit) return "build, not play";
+  return run ? "look and play" : "look";
 }
 
 /** One or two letters for a name: Ann → A, Ben Smith → BS, Guest 3 → G3. */

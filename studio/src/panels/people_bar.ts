@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: MIT
-import { initials, memberName } from "../document/people";
+import { initials, memberName, rightsText } from "../document/people";
 import type { Member } from "../connection/messages";
 import type { Parts } from "../parts";
 import { inkOn } from "../view/name_tag";
 import { lookOf } from "../view/people_view";
+import { icon } from "../tools/icons";
 import { openTextDialog } from "./dialogs";
-import { element, show } from "./element";
+import { element } from "./element";
+import { openPeople } from "./people_dialog";
 
-/** Everybody in the session as coloured initials; a click looks where they look. Hidden while nobody else is here. */
+/** Everybody in the session as coloured initials, while somebody else is here; a click looks where they look. Then what this page may do, if not all, and who else may come. */
 export class PeopleBar {
   readonly root = element("div", { class: "people", role: "group", "aria-label": "People in this scene", "data-testid": "people" });
 
-  constructor(private readonly parts: Pick<Parts, "preferences" | "notices" | "people" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "people" | "view">) {
     parts.people.changed.on(() => this.fill());
     this.fill();
   }
 
   private fill(): void {
     const { people } = this.parts;
-    show(this.root, people.others.length > 0);
     // This page first, the others as they came.
     const members = [...people.members].sort((a, b) => Number(people.isSelf(b)) - Number(people.isSelf(a)));
-    this.root.replaceChildren(...members.map((member) => this.button(member)));
+    const { edit, run } = people.rights;
+    this.root.replaceChildren(
+      ...(people.others.length > 0 ? members.map((member) => this.button(member)) : []),
+      ...(edit && run ? [] : [element("span", { class: "may", role: "status", "data-testid": "may" }, `You may ${rightsText(people.rights)}`)]),
+      element("button", { class: "tool-button", title: "People: who is here, and what they may do", "aria-label": "People", "data-testid": "people-open", onclick: () => openPeople(this.parts) }, icon("people")),
+    );
   }
 
   private button(member: Member): HTMLElement {

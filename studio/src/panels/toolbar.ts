@@ -23,7 +23,7 @@ export class Toolbar {
   private readonly buttons = new Map<UserAction, HTMLButtonElement>();
 
   constructor(
-    private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "view">,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "people" | "playback" | "selection" | "view">,
     gizmo: Gizmo,
     private readonly actions: readonly UserAction[],
     people: HTMLElement,
@@ -45,6 +45,7 @@ export class Toolbar {
     );
     parts.document.changed.on(() => this.refresh());
     parts.document.historyChanged.on(() => this.refresh());
+    parts.people.changed.on(() => this.refresh());
     parts.playback.changed.on(() => this.refresh());
     parts.selection.changed.on(() => this.refresh());
     parts.preferences.changed.on(() => this.refresh());

@@ -21,6 +21,8 @@ export interface UserAction {
   native?: boolean;
   /** Holding the key down does it again and again. */
   repeats?: boolean;
+  /** The right that it needs, beyond looking. */
+  needs?: "edit" | "run";
   /** Whether the action can be used now; missing: always. */
   possible?: () => boolean;
   /** For switches: whether it is on. */
@@ -42,8 +44,8 @@ export interface Openers {
   history(): void;
 }
 
-export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view" | "framing">, gizmo: Gizmo, pointer: Pick<Pointer, "last">, open: Openers): UserAction[] {
-  return [
+export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "people" | "playback" | "selection" | "picked" | "entities" | "view" | "framing">, gizmo: Gizmo, pointer: Pick<Pointer, "last">, open: Openers): UserAction[] {
+  return withRights(parts, [
     ...sceneActions(parts, open),
     ...editActions(parts, open),
     ...clipboardActions(parts, pointer),
@@ -56,18 +58,27 @@ export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notic
       label: `Add ${primitive.label.toLowerCase()}`,
       group: "Add",
       keys: [],
+      needs: "edit" as const,
       run: () => void addInFront(parts, primitive.entity()),
     })),
-  ];
+  ]);
+}
+
+/** What the user has no right to is not possible. */
+function withRights({ people }: Pick<Parts, "people">, actions: UserAction[]): UserAction[] {
+  return actions.map((action) => {
+    const { needs, possible } = action;
+    return needs ? { ...action, possible: () => people.rights[needs] && (possible?.() ?? true) } : action;
+  });
 }
 
 function sceneActions(parts: Pick<Parts, "server">, open: Openers): UserAction[] {
   return [
-    { id: "scene.new", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
-    { id: "scene.open", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
-    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: open.save },
-    { id: "scene.save_as", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
-    { id: "scene.save_version", label: "Save a version…", group: "Scene", keys: [], run: open.saveVersion },
+    { id: "scene.new", needs: "edit", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
+    { id: "scene.open", needs: "edit", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
+    { id: "scene.save", needs: "edit", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: open.save },
+    { id: "scene.save_as", needs: "edit", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
+    { id: "scene.save_version", needs: "edit", label: "Save a version…", group: "Scene", keys: [], run: open.saveVersion },
     { id: "scene.versions", label: "Versions of this scene…", group: "Scene", keys: [], run: open.versions },
     {
       id: "scene.download",
@@ -87,15 +98,15 @@ function editActions(parts: Pick<Parts, "server" | "notices" | "document" | "sel
     if (indices.length > 0) void parts.server.command(command, { indices });
   };
   return [
-    { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
-    { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
-    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete", "Backspace"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
-    { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
+    { id: "edit.undo", needs: "edit", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
+    { id: "edit.redo", needs: "edit", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
+    { id: "edit.delete", needs: "edit", label: "Delete", group: "Edit", keys: ["Delete", "Backspace"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
+    { id: "edit.duplicate", needs: "edit", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
     { id: "edit.select_all", label: "Select all that is not locked", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(unlocked(parts, document.entities.keys())) },
     { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
-    { id: "edit.lock", label: "Lock or unlock", group: "Edit", keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
+    { id: "edit.lock", needs: "edit", label: "Lock or unlock", group: "Edit", keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
     { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
-    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
+    { id: "edit.drop", needs: "edit", label: "Drop to floor", group: "Edit", keys: ["End"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
   ];
 }
 
@@ -148,6 +159,7 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
   return [
     {
       id: "simulation.play",
+      needs: "run",
       label: "Play or pause",
       group: "Simulation",
       keys: ["Space"],
@@ -155,9 +167,9 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
       on: () => parts.playback.playing,
       run: () => void parts.server.command(parts.playback.playing ? "simulation.pause" : "simulation.play", {}),
     },
-    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
-    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
-    { id: "simulation.keep", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
+    { id: "simulation.step", needs: "run", label: "One step", group: "Simulation", keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
+    { id: "simulation.reset", needs: "run", label: "Back to the start", group: "Simulation", keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
+    { id: "simulation.keep", needs: "edit", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
   ];
 }
 

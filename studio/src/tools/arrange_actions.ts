@@ -57,7 +57,7 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
   });
   const along = (verb: string, id: string, least: number, run: (axis: Axis) => void, icons: Partial<Record<Axis, IconName>>): UserAction[] =>
     (["x", "y", "z"] as const).map((axis) => ({ ...(icons[axis] && { icon: icons[axis] }), id: `arrange.${id}.${axis}`, label: `${verb} ${axis.toUpperCase()}`, group: "Arrange", keys: [], possible: atLeast(least), run: () => run(axis) }));
-  return [
+  const actions: UserAction[] = [
     ...nudge("ArrowLeft", "to the left", -1, 0, 0),
     ...nudge("ArrowRight", "to the right", 1, 0, 0),
     ...nudge("ArrowUp", "away", 0, 0, 1),
@@ -90,6 +90,7 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
     { id: "arrange.group", label: "Group", group: "Arrange", icon: "group", keys: ["Ctrl+G"], possible: atLeast(2), run: () => void parts.server.command("entity.group", { indices: indices() }) },
     { id: "arrange.ungroup", label: "Ungroup", group: "Arrange", icon: "ungroup", keys: ["Ctrl+Shift+G"], possible: () => groupsOf(parts).length > 0, run: () => void ungroup(parts) },
   ];
+  return actions.map((action) => ({ ...action, needs: "edit" }));
 }
 
 /** Four copies beside the selection, each touching the one before. */

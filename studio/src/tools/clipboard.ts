@@ -22,8 +22,8 @@ export function clipboardActions(parts: ClipboardParts, pointer: Pick<Pointer, "
   });
   return [
     { id: "edit.copy", label: "Copy", group: "Edit", keys: ["Ctrl+C"], possible: some, run: () => void copy(parts) },
-    { id: "edit.cut", label: "Cut", group: "Edit", keys: ["Ctrl+X"], possible: some, run: () => void cut(parts) },
-    { id: "edit.paste", label: "Paste", group: "Edit", keys: ["Ctrl+V"], native: true, run: () => void pasteByHand(parts, pointer) },
+    { id: "edit.cut", needs: "edit", label: "Cut", group: "Edit", keys: ["Ctrl+X"], possible: some, run: () => void cut(parts) },
+    { id: "edit.paste", needs: "edit", label: "Paste", group: "Edit", keys: ["Ctrl+V"], native: true, run: () => void pasteByHand(parts, pointer) },
   ];
 }
 

@@ -27,7 +27,7 @@ export class Gizmo {
   /** Shift is held, which reverses snapping. */
   private turned = false;
 
-  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "selection" | "motion" | "entities" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "people" | "selection" | "motion" | "entities" | "view">) {
     const { view } = parts;
     this.controls = new TransformControls(view.rig.camera, view.canvas);
     this.controls.setSize(0.8);
@@ -39,6 +39,7 @@ export class Gizmo {
     parts.selection.changed.on(() => this.attach());
     parts.entities.loaded.on(() => this.attach());
     parts.document.changed.on(() => this.attach());
+    parts.people.changed.on(() => this.attach());
     parts.preferences.changed.on(() => this.applySnap());
     for (const kind of ["keydown", "keyup"] as const)
       addEventListener(kind, (event) => {
@@ -80,7 +81,7 @@ export class Gizmo {
   private attach(): void {
     const drawn = this.movable().some((index) => this.parts.entities.drawableOf(index));
     if (this.controls.dragging) return;
-    if (this.tool === "select" || !drawn) {
+    if (this.tool === "select" || !drawn || !this.parts.people.rights.edit) {
       this.controls.detach();
     } else {
       this.place(performance.now());

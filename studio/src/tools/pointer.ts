@@ -41,7 +41,7 @@ export class Pointer {
   private readonly spring: SpringLine;
 
   constructor(
-    private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "playback" | "selection" | "motion" | "entities" | "view">,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "people" | "playback" | "selection" | "motion" | "entities" | "view">,
     private readonly gizmo: Gizmo,
   ) {
     this.spring = new SpringLine(parts);
@@ -106,7 +106,8 @@ export class Pointer {
   }
 
   private isMovable(index: number): boolean {
-    if (isLocked(this.parts, index)) return false;
+    const { rights } = this.parts.people;
+    if (isLocked(this.parts, index) || !(this.parts.playback.playing ? rights.run : rights.edit)) return false;
     const shape = this.parts.document.entity(index)?.shape?.type;
     if (shape === "plane" || shape === "heightfield" || shape === "mesh") return false;
     return !this.parts.playback.playing || this.parts.motion.state(index) !== BodyState.still;

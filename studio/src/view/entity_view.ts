@@ -276,8 +276,6 @@ export class EntityView {
       // The entity may have changed while the mesh was being loaded.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
         this.join(entity, key, () => skin.drawable);
-        // Sets the present pose at once, so that the entity is never drawn with its nodes at rest.
-        this.place(index, performance.now());
         this.pointed.emit(index);
       } else if (skin) {
         this.discard(entity, skin.drawable);
@@ -309,6 +307,8 @@ export class EntityView {
     batch.add(entity.index, colorOf(entity));
     this.batchOf.set(entity.index, { key, batch, entity });
     this.colorCloud(entity.index);
+    // At once, not with the next picture: rays of the pointer meet it from now on.
+    this.place(entity.index, performance.now());
     this.motion.moved.add(entity.index);
     this.motion.restated.add(entity.index);
   }

@@ -233,9 +233,9 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
 std::span<const Command> attribute_commands() {
     static constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
                                            {"entity.reset_attribute", reset_attribute},
-                                           {"entity.attributes", list_attributes},
-                                           {"entity.collision_shape", tell_collision_shape},
-                                           {"entity.simulation_mesh", tell_simulation_mesh}};
+                                           {"entity.attributes", list_attributes, Need::look},
+                                           {"entity.collision_shape", tell_collision_shape, Need::look},
+                                           {"entity.simulation_mesh", tell_simulation_mesh, Need::look}};
     return commands;
 }
 

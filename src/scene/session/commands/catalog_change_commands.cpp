@@ -269,8 +269,8 @@ Result<json> reset_model_attribute(SessionState& state, const json& params) { re
 std::span<const Command> catalog_change_commands() {
     static constexpr Command commands[] = {{"catalog.change", change},
                                            {"catalog.undo", undo},
-                                           {"catalog.history", history},
-                                           {"catalog.stop", stop},
+                                           {"catalog.history", history, Need::look},
+                                           {"catalog.stop", stop, Need::look},
                                            {"catalog.set_attribute", set_model_attribute},
                                            {"catalog.reset_attribute", reset_model_attribute}};
     return commands;

@@ -80,8 +80,9 @@ Result<json> model(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> catalog_commands() {
-    static constexpr Command commands[] = {
-        {"catalog.search", search}, {"catalog.categories", categories}, {"catalog.model", model}};
+    static constexpr Command commands[] = {{"catalog.search", search, Need::look},
+                                           {"catalog.categories", categories, Need::look},
+                                           {"catalog.model", model, Need::look}};
     return commands;
 }
 

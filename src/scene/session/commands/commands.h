@@ -10,6 +10,7 @@
 #include "foundation/result.h"
 #include "scene/file/json/field_reader.h"
 #include "scene/session/placement.h"
+#include "scene/session/rights.h"
 #include "scene/session/session_state.h"
 
 namespace embody::scene {
@@ -18,6 +19,7 @@ namespace embody::scene {
 struct Command {
     const char* name;
     Result<nlohmann::json> (*execute)(SessionState& state, const nlohmann::json& params);
+    Need need = Need::edit;
 };
 
 // One list for each family of commands, each in one file.

@@ -104,7 +104,7 @@ std::span<const Command> joint_and_action_commands() {
                                            {"joint.remove", remove_joint},
                                            {"action.add", add_action},
                                            {"action.remove", remove_action},
-                                           {"action.trigger", trigger}};
+                                           {"action.trigger", trigger, Need::run}};
     return commands;
 }
 

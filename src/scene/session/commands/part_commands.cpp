@@ -20,12 +20,6 @@ namespace {
 
 constexpr int max_copies = 10'000;  // of one command: a slip in a count must not fill the memory
 
-std::vector<EntityIndex> indices_of(const Document& document) {
-    std::vector<EntityIndex> indices;
-    for (const Entity& entity : document.entities) indices.push_back(entity.index);
-    return indices;
-}
-
 Result<json> copy(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -149,7 +143,8 @@ Result<json> array(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> part_commands() {
-    static constexpr Command commands[] = {{"entity.copy", copy}, {"entity.paste", paste}, {"entity.array", array}};
+    static constexpr Command commands[] = {
+        {"entity.copy", copy, Need::look}, {"entity.paste", paste}, {"entity.array", array}};
     return commands;
 }
 

@@ -72,6 +72,7 @@ Result<json> hello(SessionState& state, const json& params) {
                 {"name", state.name},
                 {"client", state.client},
                 {"members", state.people.members()},
+                {"rights", rights_to_json(client.rights)},
                 {"recovered", recoveries_to_json(state.options)},
                 {"kept", !state.is_unkept},
                 {"spawned", std::move(spawned)},
@@ -193,11 +194,26 @@ Result<json> answer(SessionState& state, const json& params) {
     return done(answer_question(state, number, agrees));
 }
 
+Result<json> change_rights(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::uint32_t client = 0;
+    bool edit = false, run = false;
+    if (reader.need("client", "the number of a member")) reader.whole("client", client, 1);
+    if (reader.need("edit", "whether it may edit")) reader.truth("edit", edit);
+    if (reader.need("run", "whether it may run the simulation")) reader.truth("run", run);
+    if (!reader.finish()) return *error;
+    return done(set_rights(state, client, edit, run));
+}
+
 }  // namespace
 
 std::span<const Command> people_commands() {
-    static constexpr Command commands[] = {
-        {"hello", hello}, {"client.set_name", set_name}, {"client.present", present}, {"scene.answer", answer}};
+    static constexpr Command commands[] = {{"hello", hello, Need::look},
+                                           {"client.set_name", set_name, Need::look},
+                                           {"client.present", present, Need::look},
+                                           {"scene.answer", answer, Need::look},
+                                           {"client.set_rights", change_rights, Need::look}};
     return commands;
 }
 

@@ -141,10 +141,10 @@ Result<json> pick(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> placement_commands() {
-    static constexpr Command commands[] = {{"entity.preview", preview},
+    static constexpr Command commands[] = {{"entity.preview", preview, Need::look},
                                            {"entity.drag", drag},
                                            {"entity.drop_to_floor", drop_to_floor},
-                                           {"scene.pick", pick}};
+                                           {"scene.pick", pick, Need::look}};
     return commands;
 }
 

@@ -225,10 +225,15 @@ Result<json> redo(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> scene_commands() {
-    static constexpr Command commands[] = {
-        {"scene.new", make_new},      {"scene.load", load},         {"scene.save", save},
-        {"scene.list", list},         {"scene.versions", versions}, {"scene.discard", discard},
-        {"scene.settings", settings}, {"edit.undo", undo},          {"edit.redo", redo}};
+    static constexpr Command commands[] = {{"scene.new", make_new},
+                                           {"scene.load", load},
+                                           {"scene.save", save},
+                                           {"scene.list", list, Need::look},
+                                           {"scene.versions", versions, Need::look},
+                                           {"scene.discard", discard},
+                                           {"scene.settings", settings},
+                                           {"edit.undo", undo},
+                                           {"edit.redo", redo}};
     return commands;
 }
 

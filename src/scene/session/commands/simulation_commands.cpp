@@ -176,11 +176,16 @@ Result<json> listen(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> simulation_commands() {
-    static constexpr Command commands[] = {{"simulation.play", play},           {"simulation.pause", pause},
-                                           {"simulation.step", step},           {"simulation.reset", reset},
-                                           {"simulation.keep", keep},           {"simulation.grab", grab},
-                                           {"simulation.move_grab", move_grab}, {"simulation.release", release},
-                                           {"simulation.touch", touch},         {"simulation.listen", listen}};
+    static constexpr Command commands[] = {{"simulation.play", play, Need::run},
+                                           {"simulation.pause", pause, Need::run},
+                                           {"simulation.step", step, Need::run},
+                                           {"simulation.reset", reset, Need::run},
+                                           {"simulation.keep", keep},
+                                           {"simulation.grab", grab, Need::run},
+                                           {"simulation.move_grab", move_grab, Need::run},
+                                           {"simulation.release", release, Need::run},
+                                           {"simulation.touch", touch, Need::run},
+                                           {"simulation.listen", listen, Need::look}};
     return commands;
 }
 
