@@ -200,6 +200,18 @@ describe("building in a room", { timeout: 900000 }, () => {
     await picture("bar");
   });
 
+  it("meets a thing under the pointer as soon as it is there, before the next picture", async () => {
+    await page.evaluate(() => window.embody.halt());
+    const boxes = [];
+    for (const x of [-1, 0, 1]) boxes.push((await session.command("entity.add", { entity: { shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [x, 0.2, 0] } } })).index);
+    await drawn(6);
+    for (const index of boxes) {
+      const picked = await page.evaluate((index) => (({ x, y }) => window.embody.pick(x, y))(window.embody.seenAt(index)), index);
+      assert.equal(picked, index);
+    }
+    await page.evaluate(() => window.embody.resume());
+  });
+
   it("groups things that are then chosen and dragged together, as a tree", async () => {
     const boxes = [];
     for (const x of [-1, 0, 1]) boxes.push((await session.command("entity.add", { entity: { name: `Box ${x}`, shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [x, 0.2, 0] } } })).index);
