@@ -2,6 +2,7 @@
 import "./style/theme.css";
 import "./style/layout.css";
 import "./style/panels.css";
+import "./style/narrow.css";
 import { ArrangeBar } from "./panels/arrange_bar";
 import { AttributeList } from "./panels/attribute_list";
 import { openContextMenu } from "./panels/context_menu";
@@ -13,6 +14,7 @@ import { openHelp } from "./panels/help";
 import { openHistory } from "./panels/history";
 import { HeadsetButtons } from "./panels/headset_buttons";
 import { Hierarchy } from "./panels/hierarchy";
+import { Layout } from "./panels/layout";
 import { LibraryProgress } from "./panels/library_progress";
 import { ModelBrowser } from "./panels/model_browser";
 import { ModelFields } from "./panels/model_fields";
@@ -28,6 +30,7 @@ import { SceneFields } from "./panels/scene_fields";
 import { StatusBar } from "./panels/status_bar";
 import { Toasts } from "./panels/toasts";
 import { Toolbar } from "./panels/toolbar";
+import { Tour } from "./panels/tour";
 import { Studio } from "./studio";
 import { offerTestHook } from "./test_hook";
 import { makeActions, type UserAction } from "./tools/actions";
@@ -35,6 +38,7 @@ import { Gizmo } from "./tools/gizmo";
 import { Keyboard } from "./tools/keys";
 import { Pointer } from "./tools/pointer";
 import { ContactSounds } from "./tools/contact_sounds";
+import { Touches } from "./tools/touches";
 import { VrSession } from "./vr/session";
 
 const canvas = element("canvas", { tabindex: 0, "aria-label": "The scene", "data-testid": "canvas" });
@@ -55,7 +59,8 @@ function start(): void {
   const studio = new Studio(canvas);
   const gizmo = new Gizmo(studio);
   const pointer = new Pointer(studio, gizmo);
-  const browser = new ModelBrowser(studio, new DragIn(studio));
+  const dragIn = new DragIn(studio);
+  const browser = new ModelBrowser(studio, dragIn);
   const left = leftPanel(browser, new Hierarchy(studio), new LibraryProgress(studio));
 
   const actions: UserAction[] = makeActions(studio, gizmo, pointer, {
@@ -83,13 +88,15 @@ function start(): void {
   const attributes = new AttributeList(studio);
   show(entityFields.root, false);
   show(attributes.root, false);
-  app.append(
-    toolbar.root,
-    left.root,
-    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root),
-    new StatusBar(studio).root,
-  );
-  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root);
+  const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root);
+  app.append(toolbar.root, left.root, right, new StatusBar(studio).root);
+  const layout = new Layout(studio, app, scene, { left: left.root, right });
+  actions.push(...layout.actions);
+  dragIn.began.on(() => layout.freeScene());
+  new Touches(canvas, studio.view.rig, pointer);
+  const tour = new Tour(studio, pointer.grabbed);
+  actions.push({ id: "view.tour", label: "First steps", group: "View", keys: [], run: () => tour.begin() });
+  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root);
   document.body.append(new Toasts(studio).root);
 
   const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));

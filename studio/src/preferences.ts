@@ -8,6 +8,7 @@ import { VR_DEFAULTS, type VrSettings } from "./vr/settings";
 
 /** This user's preferences; kept in the browser. */
 export interface PreferenceValues {
+  /** Unless the user has chosen one, what the system asks for. */
   theme: Theme;
   quality: Quality;
   /** States of the simulation are shown by colours. */
@@ -33,6 +34,10 @@ export interface PreferenceValues {
   recoveriesKnown: string[];
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
+  /** The first steps were shown. */
+  toured: boolean;
+  /** Panels that are put away. */
+  folded: readonly ("left" | "right")[];
   /** Impacts are heard. */
   sounds: boolean;
   vr: VrSettings;
@@ -56,18 +61,35 @@ const DEFAULTS: PreferenceValues = {
   nameAsked: false,
   recoveriesKnown: [],
   keys: {},
+  toured: false,
+  folded: [],
   sounds: true,
   vr: VR_DEFAULTS,
 };
 
+const LIGHT = matchMedia("(prefers-color-scheme: light)");
+const CALM = matchMedia("(prefers-reduced-motion: reduce)");
+
+function systemTheme(): Theme {
+  return LIGHT.matches ? "light" : "dark";
+}
+
+/** The user asked the system for less motion: what glides jumps. */
+export function wantsCalm(): boolean {
+  return CALM.matches;
+}
+
 export class Preferences {
   readonly changed = new Signal<keyof PreferenceValues>();
   private readonly values: PreferenceValues;
+  /** What the user has chosen; the rest may change with the system or with another version. */
+  private readonly chosen: Partial<PreferenceValues>;
 
   constructor() {
-    const kept = readKept();
-    this.values = { ...DEFAULTS, ...kept, vr: { ...VR_DEFAULTS, ...kept.vr } };
-    if (!kept.quality && drawsInSoftware()) this.values.quality = "low";
+    this.chosen = readKept();
+    this.values = { ...DEFAULTS, ...this.chosen, vr: { ...VR_DEFAULTS, ...this.chosen.vr } };
+    if (!this.chosen.quality && drawsInSoftware()) this.values.quality = "low";
+    this.followSystem();
     // `?quality=low` holds for one visit: for software renderers and tests.
     const asked = new URLSearchParams(location.search).get("quality");
     if (asked === "low" || asked === "high") this.values.quality = asked;
@@ -79,12 +101,39 @@ export class Preferences {
 
   set<Name extends keyof PreferenceValues>(name: Name, value: PreferenceValues[Name]): void {
     this.values[name] = value;
+    this.chosen[name] = value;
+    this.keep();
+    this.changed.emit(name);
+  }
+
+  /** Whether the theme is the system's. */
+  get followsSystem(): boolean {
+    return this.chosen.theme === undefined;
+  }
+
+  /** Takes the theme that the system asks for, now and whenever it changes. */
+  useSystemTheme(): void {
+    delete this.chosen.theme;
+    this.keep();
+    this.values.theme = systemTheme();
+    this.changed.emit("theme");
+  }
+
+  private followSystem(): void {
+    if (this.followsSystem) this.values.theme = systemTheme();
+    LIGHT.addEventListener("change", () => {
+      if (!this.followsSystem) return;
+      this.values.theme = systemTheme();
+      this.changed.emit("theme");
+    });
+  }
+
+  private keep(): void {
     try {
-      localStorage.setItem(PLACE, JSON.stringify(this.values));
+      localStorage.setItem(PLACE, JSON.stringify(this.chosen));
     } catch {
       // Where the user lets the browser store nothing, preferences are lost with the page.
     }
-    this.changed.emit(name);
   }
 }
 

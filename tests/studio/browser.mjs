@@ -29,8 +29,8 @@ export async function openBrowser() {
 }
 
 /** A connected page of the Studio, with its models drawn. Errors of the page fail the test through `faults`. */
-export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {}, recoveries = false } = {}) {
-  const context = await browser.newContext({ viewport: { width, height } });
+export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {}, recoveries = false, ...more } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: "dark", ...more });
   const page = await context.newPage();
   await prepare(page);
   page.faults = [];
@@ -38,6 +38,7 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
   const url = new URL(address);
   url.searchParams.set("quality", quality);
+  if (!url.searchParams.has("tour")) url.searchParams.set("tour", "no");
   await page.goto(url.href);
   await page.waitForFunction(() => window.embody?.connected() && window.embody.loading() === 0, null, { timeout: 60000 });
   // Earlier tests leave unsaved work behind, which the page offers.
@@ -63,7 +64,7 @@ export async function pictureOfScene(page) {
   // And without messages that lie over it. The page's policy allows no style element, but a sheet that a script makes.
   await page.evaluate(() => {
     const sheet = new CSSStyleSheet();
-    sheet.replaceSync(".toasts, .overlays, .cards { visibility: hidden !important; }");
+    sheet.replaceSync(".toasts, #scene > :not(canvas) { visibility: hidden !important; }");
     document.adoptedStyleSheets = [sheet];
   });
   const picture = await page.getByTestId("canvas").screenshot();

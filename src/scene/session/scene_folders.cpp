@@ -45,10 +45,11 @@ std::string name_in(const fs::path& file) {
     return encoded(name) == stem ? name : stem;
 }
 
-// Stops reading at the title: the writer puts it at the top, and scenes can be large.
-class TitleFinder : public nlohmann::json_sax<nlohmann::json> {
+// Reads title and description, and stops where the entities begin: the writer puts those at the top, and scenes can be
+// large.
+class HeadingReader : public nlohmann::json_sax<nlohmann::json> {
 public:
-    std::string title;
+    std::string title, description;
 
     bool null() override { return true; }
     bool boolean(bool) override { return true; }
@@ -56,15 +57,15 @@ public:
     bool number_unsigned(number_unsigned_t) override { return true; }
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t& value) override {
-        if (depth_ != 1 || !is_title_) return true;
-        title = value;
-        return false;
+        if (depth_ == 1 && key_ == "title") title = value;
+        if (depth_ == 1 && key_ == "description") description = value;
+        return true;
     }
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override { return ++depth_ < 64; }
     bool key(string_t& value) override {
-        is_title_ = value == "title";
-        return true;
+        if (depth_ == 1) key_ = value;
+        return depth_ != 1 || value != "entities";
     }
     bool end_object() override { return --depth_ >= 0; }
     bool start_array(std::size_t) override { return ++depth_ < 64; }
@@ -73,14 +74,15 @@ public:
 
 private:
     int depth_ = 0;
-    bool is_title_ = false;
+    std::string key_;  ///< of the outermost object
 };
 
-std::string title_of(const fs::path& file) {
+HeadingReader heading_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
-    TitleFinder finder;
-    nlohmann::json::sax_parse(in, &finder);
-    return finder.title.empty() ? file.stem().string() : finder.title;
+    HeadingReader heading;
+    nlohmann::json::sax_parse(in, &heading);
+    if (heading.title.empty()) heading.title = file.stem().string();
+    return heading;
 }
 
 // The scenes of a folder by name; none for a folder that does not exist.
@@ -91,8 +93,9 @@ std::vector<ListedScene> list_folder(const fs::path& folder, const std::string& 
         std::error_code unreadable;
         if (entry->path().extension() != ".json" || !entry->is_regular_file(unreadable)) continue;
         const auto time = entry->last_write_time(unreadable);
-        scenes.push_back({prefix + name_in(entry->path()), title_of(entry->path()), kind,
-                          unreadable ? std::string() : utc_text(time)});
+        HeadingReader heading = heading_of(entry->path());
+        scenes.push_back({prefix + name_in(entry->path()), std::move(heading.title), std::move(heading.description),
+                          kind, unreadable ? std::string() : utc_text(time)});
     }
     std::sort(scenes.begin(), scenes.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     return scenes;
@@ -193,8 +196,11 @@ json scenes_to_json(const SessionOptions& options) {
     json rows = json::array();
     const auto add = [&rows](const std::vector<ListedScene>& scenes) {
         for (const ListedScene& scene : scenes)
-            rows.push_back(
-                {{"name", scene.name}, {"title", scene.title}, {"kind", scene.kind}, {"modified", scene.modified}});
+            rows.push_back({{"name", scene.name},
+                            {"title", scene.title},
+                            {"description", scene.description},
+                            {"kind", scene.kind},
+                            {"modified", scene.modified}});
     };
     add(list_folder(options.saved_scenes, "saved", ""));
     for (json& recovery : recoveries_to_json(options)) rows.push_back(std::move(recovery));

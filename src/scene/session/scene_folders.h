@@ -15,7 +15,7 @@ namespace embody::scene {
 /// A file of one of the folders.
 struct ListedScene {
     std::string name;  ///< what scene.load takes
-    std::string title;
+    std::string title, description;
     std::string kind;      ///< "saved", "demo" or "version"
     std::string modified;  ///< UTC, e.g. "2026-11-20T13:00:00Z"
 };

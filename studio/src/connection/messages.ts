@@ -89,6 +89,8 @@ export interface ChangeBatch {
 export interface SceneListing {
   name: string;
   title: string;
+  /** Not of a recovery. */
+  description?: string;
   /** `recovery`: work that was not saved before its program ended or another scene was opened. */
   kind: "saved" | "recovery" | "demo";
   modified: string | null;

@@ -16,6 +16,8 @@ export interface Carried {
 /** Drags something from a panel into the scene: a picture at the pointer, and over the scene a ghost on the surface below. */
 export class DragIn {
   readonly added = new Signal<ModelSummary>();
+  /** Something is being carried. */
+  readonly began = new Signal<void>();
   private readonly ghost: Ghost;
   private readonly picture = element("div", { class: "carried", hidden: true });
 
@@ -53,6 +55,7 @@ export class DragIn {
     this.picture.replaceChildren(...[...source.querySelectorAll("img, svg:not(.icon)")].map((each) => each.cloneNode(true)));
     this.picture.hidden = false;
     document.body.classList.add("carrying");
+    this.began.emit();
     this.ghost.begin(carried.entity).catch((error: Error) => this.parts.notices.report(error));
     return carried;
   }

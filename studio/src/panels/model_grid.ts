@@ -229,8 +229,9 @@ export class ModelGrid {
       },
       element("img", { src: this.parts.models.thumbnail(model), alt: "", loading: "lazy", draggable: "false" }),
       element("span", { class: "tile-name" }, model.name),
-      this.favouriteButton(model),
+      this.star(model),
     );
+    this.markFavourite(tile, model);
     this.dragIn.from(tile, () => ({ entity: entityOf(model), model }));
     tile.toggleAttribute("data-picked", this.parts.picked.model?.key === model.key);
     this.tiles.set(at, tile);
@@ -240,9 +241,7 @@ export class ModelGrid {
 
   private openMenu(event: MouseEvent, model: ModelSummary): void {
     event.preventDefault();
-    const { preferences } = this.parts;
-    const favourites = preferences.get("favourites");
-    const is = favourites.includes(model.key);
+    const is = this.parts.preferences.get("favourites").includes(model.key);
     openMenu(
       [
         [
@@ -252,10 +251,7 @@ export class ModelGrid {
         [
           {
             label: is ? "No favourite any more" : "Favourite",
-            run: () => {
-              preferences.set("favourites", is ? favourites.filter((key) => key !== model.key) : [model.key, ...favourites]);
-              this.lay();
-            },
+            run: () => this.toggleFavourite(model),
           },
         ],
       ],
@@ -263,26 +259,27 @@ export class ModelGrid {
     );
   }
 
-  private favouriteButton(model: ModelSummary): HTMLElement {
+  private toggleFavourite(model: ModelSummary): void {
     const { preferences } = this.parts;
-    const isFavourite = () => preferences.get("favourites").includes(model.key);
-    const button = element(
-      "button",
-      {
-        class: "favourite",
-        tabindex: -1,
-        "aria-label": `Favourite: ${model.name}`,
-        "aria-pressed": String(isFavourite()),
-        onclick: (event: Event) => {
-          event.stopPropagation();
-          const others = preferences.get("favourites").filter((key) => key !== model.key);
-          preferences.set("favourites", isFavourite() ? others : [model.key, ...others]);
-          button.setAttribute("aria-pressed", String(isFavourite()));
-        },
-      },
-      icon("star"),
-    );
-    return button;
+    const favourites = preferences.get("favourites");
+    const is = favourites.includes(model.key);
+    preferences.set("favourites", is ? favourites.filter((key) => key !== model.key) : [model.key, ...favourites]);
+    for (const tile of this.tiles.values()) if (tile.dataset["key"] === model.key) this.markFavourite(tile, model);
+  }
+
+  private markFavourite(tile: HTMLElement, model: ModelSummary): void {
+    const is = this.parts.preferences.get("favourites").includes(model.key);
+    tile.toggleAttribute("data-favourite", is);
+    tile.setAttribute("aria-description", is ? "a favourite" : "");
+  }
+
+  /** A star for the mouse; the keyboard has the key F, everybody the menu. A button may not be inside an option. */
+  private star(model: ModelSummary): HTMLElement {
+    const click = (event: Event): void => {
+      event.stopPropagation();
+      this.toggleFavourite(model);
+    };
+    return element("span", { class: "favourite", "aria-hidden": "true", title: "Favourite", onclick: click }, icon("star"));
   }
 
   private modelAt(at: number): ModelSummary | undefined {
@@ -308,6 +305,9 @@ export class ModelGrid {
     } else if (event.key === "Enter") {
       const model = this.modelAt(this.active);
       if (model) this.add(model);
+    } else if (event.key === "f") {
+      const model = this.modelAt(this.active);
+      if (model) this.toggleFavourite(model);
     } else return;
     event.preventDefault();
   }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 import { DEBUG_NAMES, type DebugName } from "../connection/debug_frame";
 import type { Parts } from "../parts";
+import type { Preferences } from "../preferences";
 import type { UserAction } from "../tools/actions";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 import { numberField } from "./fields";
 import { userNameField } from "./user_name";
+import type { Theme } from "../view/environment";
 import type { Offer } from "../vr/offer";
 
 const DEBUG_LABELS: Record<DebugName, string> = {
@@ -47,6 +49,14 @@ function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): 
   return { root, end: view.debug.changed.on(tell) };
 }
 
+function themeChoice(preferences: Preferences): HTMLElement {
+  const choices = { system: "as the system", dark: "dark", light: "light" };
+  const shown = preferences.followsSystem ? "system" : preferences.get("theme");
+  const choose = () => (select.value === "system" ? preferences.useSystemTheme() : preferences.set("theme", select.value as Theme));
+  const select = element("select", { "data-testid": "option-theme", onchange: choose }, ...Object.entries(choices).map(([value, label]) => element("option", { value, selected: value === shown }, label)));
+  return select;
+}
+
 /** Options of drawing and snapping; kept in the browser. */
 export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view">, actions: readonly UserAction[], headset: Offer | null): void {
   const { preferences } = parts;
@@ -77,7 +87,7 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
       flip("view.grid"),
       flip("view.collision"),
       row("Sounds of impacts", sounds),
-      flip("view.theme"),
+      row("Colours", themeChoice(preferences)),
       flip("view.quality"),
       flip("tool.snap"),
       inside.root,

@@ -38,7 +38,7 @@ export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly
       ...found.map((action) =>
         element(
           "li",
-          { role: "option", class: action.possible?.() ?? true ? "" : "disabled", onclick: () => run(action) },
+          { role: "option", "aria-disabled": String(!(action.possible?.() ?? true)), onclick: () => run(action) },
           element("span", { class: "note" }, action.group),
           element("span", {}, action.label),
           element("kbd", {}, keysOf(parts, action)[0] ?? ""),

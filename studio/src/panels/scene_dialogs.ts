@@ -66,6 +66,7 @@ export async function openScenes(parts: Opener): Promise<void> {
   const file = element("input", { type: "file", accept: ".json,application/json", hidden: true });
   const fromFile = element("button", { onclick: () => file.click() }, "Open a scene file…");
   const dialog = openDialog("Open a scene", "scenes-dialog", body, dialogButtons(file, fromFile));
+  dialog.classList.add("wide");
   const load = (name: string): void => {
     dialog.close();
     void openScene(parts, { name });
@@ -80,14 +81,15 @@ export async function openScenes(parts: Opener): Promise<void> {
   const fill = async (): Promise<boolean> => {
     const answer = await parts.server.command("scene.list", {});
     if (!answer) return false;
+    const of = (kind: SceneListing["kind"]) => answer.scenes.filter((scene) => scene.kind === kind);
     const list = (title: string, kind: SceneListing["kind"], none: string) => {
-      const items = answer.scenes.filter((scene) => scene.kind === kind).map((scene) => sceneItem(scene, load, () => void discard(scene.name)));
+      const items = of(kind).map((scene) => sceneItem(scene, load, () => void discard(scene.name)));
       return element("section", {}, element("h3", {}, title), items.length > 0 ? element("ul", {}, ...items) : element("p", { class: "note" }, none));
     };
     const recovered = answer.scenes.some((scene) => scene.kind === "recovery");
     body.replaceChildren(
       element("div", {}, list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."), recovered ? list("Recovered, never saved", "recovery", "") : null),
-      list("Examples", "demo", "No examples found."),
+      element("section", {}, element("h3", {}, "Examples"), gallery(of("demo"), load)),
     );
     return true;
   };
@@ -99,10 +101,21 @@ export async function openScenes(parts: Opener): Promise<void> {
   body.querySelector<HTMLElement>("button")?.focus();
 }
 
+/** A card with a picture for each example. */
+function gallery(scenes: readonly SceneListing[], load: (name: string) => void): HTMLElement {
+  if (scenes.length === 0) return element("p", { class: "note" }, "No examples found.");
+  const card = ({ name, title, description }: SceneListing): HTMLElement => {
+    const picture = element("img", { src: `gallery/${name}.webp`, alt: "", width: 320, height: 200, loading: "lazy" });
+    // An example that was added by hand has none.
+    picture.addEventListener("error", () => picture.classList.add("missing"));
+    return element("li", {}, element("button", { class: "gallery-card", "data-testid": `scene-${name}`, onclick: () => load(name) }, picture, element("strong", {}, title || name), element("span", { class: "note" }, description ?? "")));
+  };
+  return element("ul", { class: "gallery", "data-testid": "gallery" }, ...scenes.map(card));
+}
+
 function sceneItem(scene: SceneListing, load: (name: string) => void, discard: () => void): HTMLElement {
   const { name, kind, modified } = scene;
-  // The date of a demo scene is of no use to the user.
-  const note = kind === "demo" ? "" : [nameBeside(scene), dateText(modified), kind === "recovery" ? editsText(scene.edits) : ""].filter(Boolean).join(" · ");
+  const note = [nameBeside(scene), dateText(modified), kind === "recovery" ? editsText(scene.edits) : ""].filter(Boolean).join(" · ");
   const open = element(
     "button",
     { class: "scene-item", "data-testid": `scene-${name}`, onclick: () => load(name) },

@@ -29,6 +29,8 @@ export class Pointer {
   flying = false;
   /** A click with the right button at a place of the page: what can be done there? */
   readonly menuWanted = new Signal<{ x: number; y: number }>();
+  /** The user has taken hold of something that moves. */
+  readonly grabbed = new Signal<void>();
   /** Where the pointer was last over the picture. */
   readonly last = { x: 0, y: 0, over: false };
   private gesture: Gesture | null = null;
@@ -133,6 +135,7 @@ export class Pointer {
     const point = hit.point.toArray();
     this.gesture = { kind: "grab", plane, sending: false, newer: null };
     this.spring.begin(hit.index, hit.point);
+    this.grabbed.emit();
     void this.parts.server.command("simulation.grab", { index: hit.index, point, target: point });
   }
 
@@ -179,30 +182,38 @@ export class Pointer {
   private release(event: PointerEvent): void {
     const gesture = this.gesture;
     this.gesture = null;
-    if (!gesture) return;
-    if (gesture.kind === "press") this.click(gesture.hit, event);
-    else if (gesture.kind === "grab") {
+    if (gesture?.kind === "press") this.click(gesture.hit, event);
+    else if (gesture?.kind === "box") this.chooseInBox(gesture.frame);
+    else this.finish(gesture);
+    if (gesture?.kind === "look" && !this.moved) this.openMenuAt(event.clientX, event.clientY);
+  }
+
+  private finish(gesture: Gesture | null): void {
+    if (gesture?.kind === "grab") {
       this.spring.end();
       void this.parts.server.command("simulation.release", {});
-    }
-    else if (gesture.kind === "slide") void gesture.drag.end();
-    else if (gesture.kind === "box") this.chooseInBox(gesture.frame);
-    else if (gesture.kind === "carry") {
+    } else if (gesture?.kind === "slide") void gesture.drag.end();
+    else if (gesture?.kind === "box") gesture.frame.remove();
+    else if (gesture?.kind === "carry") {
       this.parts.view.canvas.classList.remove("carrying");
       void gesture.drag.end();
-    } else if (gesture.kind === "look") {
-      this.stopFlight();
-      if (!this.moved) this.openMenu(event);
-    }
+    } else if (gesture?.kind === "look") this.stopFlight();
+  }
+
+  /** Ends what the pointer is doing, without a click; what it dragged stays where it is. */
+  cancel(): void {
+    const gesture = this.gesture;
+    this.gesture = null;
+    this.finish(gesture);
   }
 
   /** The menu is for what is under the pointer: that is selected first, unless it is already. */
-  private openMenu(event: PointerEvent): void {
+  openMenuAt(x: number, y: number): void {
     const { view, selection, document } = this.parts;
-    const hit = view.pick(event.clientX, event.clientY);
+    const hit = view.pick(x, y);
     if (!hit) selection.clear();
     else if (!selection.has(hit.index)) selection.set(withGroups(document, [hit.index]));
-    this.menuWanted.emit({ x: event.clientX, y: event.clientY });
+    this.menuWanted.emit({ x, y });
   }
 
   private click(hit: Hit | null, event: PointerEvent): void {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { type Box3, PerspectiveCamera, Spherical, Vector3 } from "three";
 import type { Camera, Vector } from "../connection/scene_types";
+import { wantsCalm } from "../preferences";
 import { Signal } from "../signal";
 
 const ORBIT_PER_PIXEL = 0.006;
@@ -121,7 +122,7 @@ export class CameraRig {
   }
 
   private glideTo(toTarget: Vector3, toArm: Spherical, start: number): void {
-    this.glide = { fromTarget: this.target.clone(), toTarget, fromArm: this.arm.clone(), toArm, start };
+    this.glide = { fromTarget: this.target.clone(), toTarget, fromArm: this.arm.clone(), toArm, start: wantsCalm() ? start - FLY_TIME_MS : start };
     this.changed.emit();
   }
 

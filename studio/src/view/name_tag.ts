@@ -68,8 +68,12 @@ export function disposeSprite({ sprite }: ScreenSprite): void {
 
 /** Black or white, whichever is easier to read on the colour "#rrggbb". */
 export function inkOn(color: string): string {
-  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16) / 255) as [number, number, number];
-  return 0.299 * red + 0.587 * green + 0.114 * blue > 0.55 ? "#101418" : "#ffffff";
+  // The relative luminance of WCAG 2.2, at which black and white have the same contrast.
+  const [red, green, blue] = [1, 3, 5].map((at) => {
+    const part = parseInt(color.slice(at, at + 2), 16) / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  }) as [number, number, number];
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.179 ? "#101418" : "#ffffff";
 }
 
 function spriteOf(canvas: HTMLCanvasElement): Sprite {

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
+ball, Newton's cradle, a trampoline. The others there were built by hand.
+
+Usage: make_demo_scenes.py [FOLDER]
+"""
+import json
+import math
+import pathlib
+import random
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def turn(axis: list, degrees: float) -> dict:
+    return {"axis": axis, "degrees": degrees}
+
+
+def box(name: str, half: list, position: list, color: list, rotation: dict | None = None, **more) -> dict:
+    pose = {"position": [round(each, 6) for each in position], **({"rotation": rotation} if rotation else {})}
+    return {"name": name, "shape": {"type": "box", "half_extents": half}, "pose": pose, "color": color, **more}
+
+
+def sphere(name: str, radius: float, position: list, color: list, **more) -> dict:
+    return {"name": name, "shape": {"type": "sphere", "radius": radius}, "pose": {"position": [round(each, 6) for each in position]}, "color": color, **more}
+
+
+def fixed(name: str, half: list, position: list, color: list, rotation: dict | None = None, **attributes) -> dict:
+    return box(name, half, position, color, rotation, locked=True, category="room", attributes={"kind": "static", **attributes})
+
+
+def hue(part: float, light: float = 0.55) -> list:
+    """A colour of the wheel, 0 … 1."""
+    return [round(light + 0.35 * math.cos(2 * math.pi * (part - shift / 3)), 3) for shift in range(3)]
+
+
+def scene(title: str, description: str, camera: list, target: list, entities: list, **more) -> dict:
+    for number, entity in enumerate(entities):
+        entity["index"] = number + 1
+    return {"embody_scene": 1, "title": title, "description": description, "camera": {"position": camera, "target": target}, "entities": entities, **more}
+
+
+def card_house(storeys: int = 4) -> dict:
+    """Boards, 56 cm square and 8 mm thick, of 0.55 g/cm³, leaning on each other at 18 degrees."""
+    length, half_thick, lean = 0.56, 0.004, math.radians(18)
+    rough = {"density": 550, "friction_static": 0.55, "friction_dynamic": 0.5, "restitution": 0.05}
+    # A leaning board stands on its lower edge; its upper edge meets the other one's.
+    reach = length * math.sin(lean) + 2 * half_thick * math.cos(lean)
+    height = length * math.cos(lean) + 2 * half_thick * math.sin(lean)
+    pitch = 2 * reach + 0.002
+    entities = [fixed("Floor", [3, 0.1, 2.5], [0, -0.1, 0], [0.36, 0.24, 0.15], friction_static=0.6, friction_dynamic=0.55)]
+    for storey in range(storeys):
+        floor = storey * (height + 2 * half_thick + 0.0002) + 0.0001
+        count = storeys - storey
+        for tent in range(count):
+            x = (tent - (count - 1) / 2) * pitch
+            for side in (-1, 1):
+                centre = [x + side * (reach / 2 + 0.0001), floor + height / 2, 0]
+                entities.append(box(f"Board {len(entities)}", [half_thick, length / 2, length / 2], centre, hue(len(entities) / 31, 0.6), turn([0, 0, 1], side * math.degrees(lean)), attributes=dict(rough)))
+        for roof in range(count - 1):
+            x = (roof - (count - 2) / 2) * pitch
+            entities.append(box(f"Board {len(entities)}", [length / 2, half_thick, length / 2], [x, floor + height + half_thick + 0.0001, 0], hue(len(entities) / 31, 0.6), attributes=dict(rough)))
+    start = [-2.6, 0.3, 0.1]
+    entities.append(sphere("Ball", 0.11, start, [0.2, 0.35, 0.75], enabled=False, attributes={"mass": 0.6, "restitution": 0.6}))
+    actions = [{"name": "Ball", "receiver": {"index": len(entities)}, "trigger": {"type": "signal", "button": "Ball"}, "effect": {"type": "spawn", "pose": {"position": start}, "linear_velocity": [7, 1.2, 0]}, "once": False}]
+    return scene("House of cards", "A house of boards that only friction holds up. The button “Ball” throws one at it.", [1.7, 1.7, 3.9], [0, 0.95, 0], entities, actions=actions)
+
+
+def pool_table() -> dict:
+    """A table of 2.24 m × 1.12 m (8 feet), balls of 57.15 mm and 170 g; the cue ball has begun to roll."""
+    radius, width, depth, bed = 0.028575, 1.12, 2.24, 0.03
+    hole = 0.13
+    felt, wood = [0.05, 0.36, 0.24], [0.35, 0.2, 0.1]
+    cloth = {"friction_static": 0.2, "friction_dynamic": 0.2, "restitution": 0.5}
+    entities = [fixed("Floor", [3, 0.1, 3], [0, -0.9, 0], [0.3, 0.24, 0.2])]
+    half_w, half_d = width / 2, depth / 2
+    # The bed leaves the corners and the middles of the long sides open.
+    entities.append(fixed("Bed", [half_w - hole / 2, bed, half_d], [0, -bed, 0], felt, **cloth))
+    for side in (-1, 1):
+        for part in (-1, 1):
+            long = (half_d - hole) / 2
+            entities.append(fixed("Bed", [hole / 4, bed, long - hole / 4], [side * (half_w - hole / 4), -bed, part * (half_d / 2 + 0.0)], felt, **cloth))
+    cushion = {"friction_static": 0.2, "friction_dynamic": 0.15, "restitution": 0.75}
+    top = 0.06  # higher than real ones, so that no ball climbs over
+    for side in (-1, 1):
+        for part in (-1, 1):
+            entities.append(fixed("Cushion", [0.03, top / 2, (half_d - 1.5 * hole) / 2], [side * (half_w + 0.03), top / 2, part * half_d / 2], [0.04, 0.3, 0.2], **cushion))
+        entities.append(fixed("Cushion", [half_w - hole * 0.75, top / 2, 0.03], [0, top / 2, side * (half_d + 0.03)], [0.04, 0.3, 0.2], **cushion))
+        entities.append(fixed("Rail", [0.05, 0.135, half_d + 0.16], [side * (half_w + 0.11), -0.075, 0], wood))
+        entities.append(fixed("Rail", [half_w + 0.06, 0.135, 0.05], [0, -0.075, side * (half_d + 0.11)], wood))
+    entities.append(fixed("Tray", [half_w + 0.16, 0.01, half_d + 0.16], [0, -0.2, 0], [0.12, 0.08, 0.05], friction_static=0.5, friction_dynamic=0.5))
+    ball = {"mass": 0.17, "friction_static": 0.06, "friction_dynamic": 0.06, "restitution": 0.93, "angular_damping": 0.4}
+    # A rack is never tight; with even gaps the blow would run through it as in Newton's cradle.
+    chance = random.Random(7)
+    loose = 0.003
+    row_gap = (2 * radius + loose) * math.sqrt(3) / 2
+    number = 0
+    for row in range(5):
+        for place in range(row + 1):
+            number += 1
+            x = (place - row / 2) * (2 * radius + loose) + chance.uniform(-1, 1) * loose / 3
+            z = -half_d / 2 - row * row_gap + chance.uniform(-1, 1) * loose / 3
+            entities.append(sphere(f"Ball {number}", radius, [x, radius, z], hue(number / 15), attributes=dict(ball)))
+    cue = sphere("Cue ball", radius, [0.012, radius, half_d / 2], [0.95, 0.93, 0.88], attributes=dict(ball))
+    cue["linear_velocity"] = [0, 0, -9]
+    entities.append(cue)
+    # The floor is at zero, the cloth 0.8 m above it.
+    for entity in entities:
+        entity["pose"]["position"][1] = round(entity["pose"]["position"][1] + 0.8, 6)
+    return scene("Pool table", "The break: the white ball comes with 9 m/s. Balls and cloth have the measures and the friction of real ones.", [1.7, 2.3, 1.9], [0, 0.8, -0.2], entities)
+
+
+def domino_spiral(turns: float = 3.2) -> dict:
+    """Dominoes of the usual proportions (48 × 24 × 7.5 mm) five times as large, 0.55 of their height apart."""
+    half = [0.019, 0.12, 0.06]
+    gap, inner, pitch = 0.13, 0.55, 0.3
+    entities = [fixed("Floor", [3, 0.1, 3], [0, -0.1, 0], [0.4, 0.41, 0.43])]
+    angle, number = 0.0, 0
+    places = []
+    while angle < 2 * math.pi * turns:
+        r = inner + pitch * angle / (2 * math.pi)
+        places.append((r, angle))
+        angle += gap / r
+    for r, angle in reversed(places):
+        number += 1
+        x, z = r * math.cos(angle), r * math.sin(angle)
+        # The thin side looks along the path.
+        entities.append(box(f"Domino {number}", half, [x, half[1], z], hue(number / len(places)), turn([0, 1, 0], -math.degrees(angle) - 90), category="domino",
+                            attributes={"density": 700, "restitution": 0.05, "friction_static": 0.35, "friction_dynamic": 0.3}))
+    first = entities[1]
+    r, angle = places[-1]
+    # It turns about its lower edge, inwards along the path.
+    spin = 2.2
+    first["angular_velocity"] = [round(-spin * math.cos(angle), 6), 0, round(-spin * math.sin(angle), 6)]
+    first["linear_velocity"] = [round(spin * half[1] * math.sin(angle), 6), 0, round(-spin * half[1] * math.cos(angle), 6)]
+    return scene("Spiral of dominoes", f"{number} dominoes; the outermost is pushed.", [0.2, 2.6, 3.1], [0, 0, 0.15], entities)
+
+
+def wrecking_ball() -> dict:
+    """A ball of 250 kg on a chain of 8 links against a wall of 96 bricks."""
+    brick = {"density": 1800, "friction_static": 0.6, "friction_dynamic": 0.5, "restitution": 0.05}
+    entities = [fixed("Ground", [8, 0.1, 5], [0, -0.1, 0], [0.38, 0.37, 0.33])]
+    for row in range(12):
+        for place in range(8):
+            z = (place - 3.5 + (0.25 if row % 2 else -0.25)) * 0.402
+            entities.append(box(f"Brick {len(entities)}", [0.1, 0.1, 0.2], [1.2, 0.1 + 0.2 * row, z], [round(0.5 + 0.06 * ((row + place) % 3), 3), 0.24, 0.17], attributes=dict(brick)))
+    pivot, links, link = [0, 4.6, 0], 8, 0.36
+    lean = math.radians(68)
+    along = [-math.sin(lean), -math.cos(lean), 0]
+    at = lambda distance: [pivot[axis] + distance * along[axis] for axis in range(3)]
+    entities.append(fixed("Crane", [0.12, 0.08, 3], [0, 4.7, 0], [0.75, 0.55, 0.1]))
+    joints, last = [], None
+    for number in range(links):
+        index = len(entities) + 1
+        entities.append({"name": f"Link {number + 1}", "shape": {"type": "capsule", "radius": 0.04, "half_height": link / 2 - 0.05}, "pose": {"position": [round(each, 6) for each in at((number + 0.5) * link)], "rotation": turn([0, 0, 1], -math.degrees(lean))},
+                         "color": [0.3, 0.31, 0.33], "attributes": {"mass": 6}})
+        joints.append({"name": f"link {number + 1}", "type": "ball", "entity_b": index, "anchor": [round(each, 6) for each in at(number * link)], **({"entity_a": last} if last else {})})
+        last = index
+    radius = 0.34
+    entities.append(sphere("Ball", radius, at(links * link + radius), [0.16, 0.17, 0.19], attributes={"mass": 250, "restitution": 0.1}))
+    joints.append({"name": "ball", "type": "ball", "entity_a": last, "entity_b": len(entities), "anchor": [round(each, 6) for each in at(links * link)]})
+    return scene("Wrecking ball", "A quarter of a ton on a chain, and a wall of bricks.", [-4.6, 2.6, 6.4], [0.2, 1.6, 0], entities, joints=joints)
+
+
+def newtons_cradle(count: int = 5) -> dict:
+    """Steel balls that touch, on rods without mass worth mentioning; two are lifted."""
+    radius, length, lifted = 0.05, 0.5, 2
+    steel = {"mass": 4, "restitution": 1, "friction_static": 0, "friction_dynamic": 0, "linear_damping": 0, "angular_damping": 0}
+    entities = [fixed("Base", [0.5, 0.03, 0.3], [0, -0.03, 0], [0.2, 0.15, 0.12]), fixed("Bar", [0.35, 0.012, 0.012], [0, 0.68, -0.16], [0.7, 0.7, 0.72]), fixed("Bar", [0.35, 0.012, 0.012], [0, 0.68, 0.16], [0.7, 0.7, 0.72])]
+    for side in (-1, 1):
+        for depth in (-1, 1):
+            entities.append(fixed("Post", [0.012, 0.334, 0.012], [side * 0.338, 0.334, depth * 0.16], [0.7, 0.7, 0.72]))
+    joints = []
+    for number in range(count):
+        x = (number - (count - 1) / 2) * (2 * radius + 0.0002)
+        angle = math.radians(40) if number < lifted else 0
+        position = [x - length * math.sin(angle), 0.668 - length * math.cos(angle), 0]
+        entities.append(sphere(f"Ball {number + 1}", radius, position, [0.78, 0.79, 0.82], attributes=dict(steel)))
+        joints.append({"name": f"thread {number + 1}", "type": "hinge", "entity_b": len(entities), "anchor": [round(x, 6), 0.668, 0], "axis": [0, 0, 1]})
+    return scene("Newton's cradle", "As many balls leave on the other side as came.", [0.15, 0.55, 1.35], [0, 0.32, 0], entities, joints=joints)
+
+
+def trampoline() -> dict:
+    """A sheet that is held at its rim, and things that fall on it."""
+    entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.33, 0.42, 0.3])]
+    size, height = 1.1, 0.8
+    for x in (-1, 1):
+        for z in (-1, 1):
+            entities.append(fixed("Leg", [0.03, height / 2, 0.03], [x * (size + 0.05), height / 2, z * (size + 0.05)], [0.3, 0.32, 0.36]))
+    for side in (-1, 1):
+        entities.append(fixed("Rim", [0.03, 0.03, size + 0.08], [side * (size + 0.05), height, 0], [0.2, 0.35, 0.7]))
+        entities.append(fixed("Rim", [size + 0.08, 0.03, 0.03], [0, height, side * (size + 0.05)], [0.2, 0.35, 0.7]))
+    steps = 12
+    rim = [[-size + 2 * size * i / steps, 0, side * size] for i in range(steps + 1) for side in (-1, 1)] + [[side * size, 0, -size + 2 * size * i / steps] for i in range(1, steps) for side in (-1, 1)]
+    pins = [{"position": [round(each, 6) for each in place], "radius": 0.1} for place in rim]
+    entities.append(box("Sheet", [size, 0.003, size], [0, height, 0], [0.14, 0.15, 0.17], pins=pins, category="tarpaulin",
+                        attributes={"kind": "cloth", "area_density": 0.6, "cloth_nodes": 900, "friction_static": 0.6, "friction_dynamic": 0.5}))
+    for number, (x, y, z, radius) in enumerate([(0, 2.2, 0, 0.12), (0.35, 3, -0.2, 0.1), (-0.4, 3.7, 0.25, 0.14), (0.1, 4.5, 0.4, 0.09)]):
+        entities.append(sphere(f"Ball {number + 1}", radius, [x, y, z], hue(number / 4), attributes={"density": 250, "restitution": 0.5}))
+    return scene("Trampoline", "A sheet held at its rim, and balls that jump on it.", [3.1, 2.3, 3.6], [0, 1.1, 0], entities)
+
+
+def main() -> int:
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline):
+        (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
