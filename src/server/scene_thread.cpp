@@ -12,9 +12,11 @@
 #include <thread>
 
 #include "catalog/catalog.h"
+#include "scene/file/json/field_reader.h"
 #include "scene/file/json/text.h"
 #include "scene/file/scene_file.h"
 #include "server/debug_board.h"
+#include "server/frame_bytes.h"
 #include "server/state_frame.h"
 
 namespace embody::server {
@@ -83,6 +85,7 @@ struct SceneThread::State {
     void handle(const Message& message);
     json answer(const std::string& text);
     json execute(const json& request);
+    json whole_frame(const json& id, const json& params);
     bool tell_progress(std::size_t done, std::size_t total);
     [[nodiscard]] bool stop_is_asked();
     [[nodiscard]] bool stop_is_requested() const;
@@ -295,7 +298,8 @@ void SceneThread::State::broadcast_message(const char* level, const std::string&
 void SceneThread::State::play_until(Clock::time_point& due) {
     const Clock::time_point now = Clock::now();
     if (now < due) return;
-    const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(session->time_step()));
+    const auto step = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(session->time_step() / session->rate()));
     try {
         session->step();
     } catch (const std::exception& thrown) {
@@ -375,6 +379,7 @@ json SceneThread::State::execute(const json& request) {
         next_debug = {};
         return {{"id", id}, {"ok", true}, {"result", json::object()}};
     }
+    if (command == "time.frame") return whole_frame(id, params);
     auto result = session->execute(command.get<std::string>(), params, served);
     if (!result) return failed(id, result.error());
     if (command == "hello" && options.greeting) {
@@ -382,6 +387,29 @@ json SceneThread::State::execute(const json& request) {
         result->update(options.greeting({rights["edit"], rights["run"], rights["invite"]}));
     }
     return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
+}
+
+// One frame of everything, now or at a time of the take, for this client alone: films are drawn from these.
+json SceneThread::State::whole_frame(const json& id, const json& params) {
+    std::optional<Error> error;
+    scene::FieldReader reader(params, "", error);
+    std::optional<double> time;
+    double asked = 0;
+    if (reader.number("time", asked, {0, 1e9})) time = asked;
+    if (!reader.finish()) return failed(id, *error);
+    std::vector<scene::EntityState> states;
+    scene::Moment moment;
+    session->read_states_at(time, states, moment);
+    const bool is_past = time && !moment.entities.empty();
+    StateBoard whole;
+    whole.publish(states, is_past ? moment.time : session->simulated_time(),
+                  is_past ? moment.step : session->simulated_steps(), true);
+    json spawned = json::array();
+    for (const scene::EntityState& state : states)
+        if (const scene::Entity* entity = session->spawned(state.entity))
+            spawned.push_back(scene::entity_to_json(*entity));
+    json result = {{"frame", base64(whole.frame_since(0).bytes)}, {"spawned", std::move(spawned)}};
+    return {{"id", id}, {"ok", true}, {"result", std::move(result)}};
 }
 
 void SceneThread::State::note_missing_models() {

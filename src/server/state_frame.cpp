@@ -28,7 +28,7 @@ void append_record(std::string& frame, const scene::EntityState& state, bool has
 
 // Positions in 65535ths of the box around them: steps of 15 µm for a box of a metre.
 std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& positions,
-                          const scene::MovingPoints& points) {
+                          const scene::ShownPoints& points) {
     constexpr double steps = 65535;
     Bounds bounds;
     for (const Vec3 p : positions) bounds.add(p);
@@ -85,7 +85,7 @@ StateBoard::Row StateBoard::next_row(const scene::EntityState& state, const Row*
     if (!has_points) return row;
 
     // What was asleep and still is has not moved; for others the bytes are compared.
-    if (is_same && state.state == asleep) {
+    if (is_same && state.state == asleep && known->state.jump == state.jump) {
         row.points = known->points;
         row.points_changed = known->points_changed;
         return row;

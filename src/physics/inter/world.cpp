@@ -141,6 +141,12 @@ void World::keep_account(bool is_wanted) {
 }
 
 const StepReport& World::last_report() const { return state_->report; }
+
+void World::set_clock(double time, std::uint64_t step) {
+    state_->report.time = time;
+    state_->report.step = step;
+}
+
 std::span<const ContactEvent> World::contact_events() const { return state_->events.contacts; }
 std::span<const RopeBreakEvent> World::rope_break_events() const { return state_->events.rope_breaks; }
 std::span<const SleepEvent> World::sleep_events() const { return state_->events.sleep; }

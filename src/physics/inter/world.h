@@ -167,6 +167,8 @@ public:
     /// Advances by settings().time_step.
     const StepReport& step();
     [[nodiscard]] const StepReport& last_report() const;
+    /// Sets the simulated time (s) and the number of steps: for a world that goes on from a recorded moment.
+    void set_clock(double time, std::uint64_t step);
     /// Whether each report has the account of the energy and momenta of the rigid bodies by cause
     /// (docs/physics/energy.md). Changes no state; off, it costs nothing.
     void keep_account(bool is_wanted);

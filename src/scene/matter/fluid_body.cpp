@@ -203,6 +203,25 @@ Result<void> FluidBody::move(const Transform& motion) {
     return liquids_.regroup(*part_);
 }
 
+Result<void> FluidBody::set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+    if (!part_) return Error{"positions", "cannot be set while the liquid is disabled"};
+    if (velocities.size() != positions.size()) return Error{"velocities", "must be as many as positions"};
+    // The ids of its drops are told in ascending order, as read() tells them; lost ones have none.
+    const FluidParticles all = world_.fluid_particles(part_->fluid);
+    std::vector<std::uint32_t> ids;
+    for (const std::uint32_t i : liquids_.particles_of(*part_)) ids.push_back(all.ids[i]);
+    Result<void> changed =
+        world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t id, Vec3& position, Vec3& velocity) {
+            const auto at = static_cast<std::size_t>(std::ranges::lower_bound(ids, id) - ids.begin());
+            if (at >= positions.size()) return false;
+            position = positions[at];
+            velocity = velocities[at];
+            return true;
+        });
+    if (!changed.ok()) return changed;
+    return liquids_.regroup(*part_);
+}
+
 Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
     const Vec3 center = center_of_mass();
     for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);

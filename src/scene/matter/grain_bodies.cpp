@@ -115,6 +115,18 @@ Result<void> GrainBodies::move(const Transform& motion) {
     });
 }
 
+Result<void> GrainBodies::set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+    if (positions.size() != balls_.size() || velocities.size() != balls_.size())
+        return Error{"positions", "must be " + std::to_string(balls_.size()) + ", one a grain"};
+    std::size_t next = 0;
+    return world_.change_bodies(balls_, [&](physics::BodyDefinition& ball) {
+        ball.position = positions[next];
+        ball.linear_velocity = velocities[next++];
+        ball.angular_velocity = {};
+        ball.start_asleep = false;
+    });
+}
+
 Result<void> GrainBodies::set_velocity(Vec3 linear, Vec3 angular) {
     const Vec3 center = center_of_mass();
     for (const BodyHandle ball : balls_) {

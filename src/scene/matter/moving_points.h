@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "foundation/result.h"
@@ -21,21 +22,26 @@ struct SurfaceHit {
 
 class Liquids;
 
-/// The points of an entity that is not one body, whatever solver moves them. Their world outlives them; the destructor
-/// removes them from it. Functions of only one kind are in its own class: SoftNodes, FluidBody.
-class MovingPoints {
+/// Points as they are drawn: now, or at a moment of a take.
+class ShownPoints {
 public:
-    MovingPoints() = default;
-    MovingPoints(const MovingPoints&) = delete;
-    MovingPoints& operator=(const MovingPoints&) = delete;
-    virtual ~MovingPoints() = default;
-
-    /// Positions now, world, m: always in the same order and of the same number, except for lost drops of liquid.
+    virtual ~ShownPoints() = default;
+    /// Positions, world, m: always in the same order and of the same number, except for lost drops of liquid.
     virtual void read(std::vector<Vec3>& positions) const = 0;
     /// Radius of the ball that is drawn at each point, m; 0: the points deform the thing's own drawn form.
     [[nodiscard]] virtual double radius() const = 0;
     /// Whether they are drawn as one liquid, each as a ball of its volume.
     [[nodiscard]] virtual bool is_liquid() const { return false; }
+};
+
+/// The points of an entity that is not one body, whatever solver moves them. Their world outlives them; the destructor
+/// removes them from it. Functions of only one kind are in its own class: SoftNodes, FluidBody.
+class MovingPoints : public ShownPoints {
+public:
+    MovingPoints() = default;
+    MovingPoints(const MovingPoints&) = delete;
+    MovingPoints& operator=(const MovingPoints&) = delete;
+
     [[nodiscard]] virtual Vec3 linear_velocity() const = 0;  ///< of the centre of mass, m/s
     /// Angular velocity of the rigid body with the same angular momentum, rad/s.
     [[nodiscard]] virtual Vec3 angular_velocity() const { return {}; }
@@ -60,6 +66,9 @@ public:
     virtual Result<void> set_definition(const PointsDefinition& definition) = 0;
     /// Moves all of them as one rigid body; then they are at rest.
     virtual Result<void> move(const Transform& motion) = 0;
+    /// Puts each point at a place, m, with a velocity, m/s; in the order of read(). Of liquids drops that have no place
+    /// go, and places without a drop are left out; others are refused where the numbers differ.
+    virtual Result<void> set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
     /// Velocities as of one rigid body that turns about its centre of mass.
     virtual Result<void> set_velocity(Vec3 linear, Vec3 angular) = 0;
     /// Distributed by mass, N s.

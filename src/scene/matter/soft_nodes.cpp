@@ -217,6 +217,10 @@ void SoftNodes::let_go(BodyHandle body) {
     remove(hand);
 }
 
+Result<void> SoftNodes::set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+    return world_.set_nodes(handle_, positions, velocities);
+}
+
 Result<void> SoftNodes::move(const Transform& motion) {
     std::vector<Vec3> positions;
     read(positions);

@@ -59,6 +59,7 @@ public:
     /// The holds whose bodies and deformables still exist; not those of hands.
     [[nodiscard]] Holds holds() const;
     Result<void> move(const Transform& motion) override;
+    Result<void> set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;
     Result<void> apply_force(Vec3 force) override;

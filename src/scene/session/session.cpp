@@ -25,11 +25,24 @@ const std::map<std::string, const Command*>& command_table() {
         for (const auto family :
              {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(), entity_commands(),
               placement_commands(), arrange_commands(), group_commands(), part_commands(), attribute_commands(),
-              joint_and_action_commands(), simulation_commands()})
+              joint_and_action_commands(), simulation_commands(), time_commands()})
             for (const Command& command : family) built[command.name] = &command;
         return built;
     }();
     return table;
+}
+
+// Of the moment what is in the document or was spawned: other things were removed since.
+void append_states(const SessionState& session, const Moment& moment, std::vector<EntityState>& states) {
+    for (const EntityMoment& was : moment.entities) {
+        if (!session.is_known(was.motion.entity)) continue;
+        EntityState& state = states.emplace_back();
+        state.entity = was.motion.entity;
+        state.pose = was.motion.pose;
+        state.state = was.motion.state;
+        state.points = was.motion.points;
+        state.jump = session.past.jumps;
+    }
 }
 
 Error unknown_command(const std::string& name) {
@@ -109,26 +122,41 @@ Events Session::take_events() {
 const Document& Session::document() const { return state_->document; }
 bool Session::playing() const { return state_->play_state == PlayState::playing; }
 double Session::time_step() const { return state_->document.settings.time_step; }
+double Session::rate() const { return state_->past.rate; }
 void Session::step() { state_->step(); }
 
 void Session::read_states(std::vector<EntityState>& states) const {
-    const Simulation& simulation = *state_->simulation;
     states.clear();
+    if (state_->past.shown) return append_states(*state_, *state_->past.shown, states);
+    const Simulation& simulation = *state_->simulation;
     for (const EntityIndex index : simulation.entities()) {
         EntityState& state = states.emplace_back();
         state.entity = index;
         state.pose = simulation.pose(index);
         if (simulation.is_movable(index)) state.state = static_cast<std::uint8_t>(simulation.sleep_state(index));
         state.points = simulation.points(index);
+        state.jump = state_->past.jumps;
     }
+}
+
+void Session::read_states_at(std::optional<double> time, std::vector<EntityState>& states, Moment& moment) const {
+    if (!time || state_->past.take.empty()) return read_states(states);
+    moment = state_->past.take.at(*time);
+    states.clear();
+    append_states(*state_, moment, states);
+}
+
+const Entity* Session::spawned(EntityIndex index) const {
+    const auto found = state_->past.spawned.find(index);
+    return found == state_->past.spawned.end() ? nullptr : &found->second.entity;
 }
 
 physics::DebugDrawCount Session::debug_draw(physics::DebugDraw& draw, const physics::DebugDrawOptions& options) const {
     return state_->simulation->world().debug_draw(draw, options);
 }
 
-double Session::simulated_time() const { return state_->simulation->world().last_report().time; }
-std::uint64_t Session::simulated_steps() const { return state_->simulation->world().last_report().step; }
+double Session::simulated_time() const { return state_->shown_time(); }
+std::uint64_t Session::simulated_steps() const { return state_->shown_step(); }
 
 json Session::statistics() const {
     const physics::StepReport& report = state_->simulation->world().last_report();
@@ -143,8 +171,8 @@ json Session::statistics() const {
         if (passed.count() > 0) factor = simulated / passed.count();
     }
     return {{"event", "statistics"},
-            {"time", report.time},
-            {"step", report.step},
+            {"time", state_->shown_time()},
+            {"step", state_->shown_step()},
             {"bodies", state_->simulation->entities().size()},
             {"things", activity.things},
             {"active", activity.active},

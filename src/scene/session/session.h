@@ -19,6 +19,7 @@
 #include "scene/document/document.h"
 #include "scene/matter/moving_points.h"
 #include "scene/session/rights.h"
+#include "scene/simulation/take.h"
 
 namespace embody::scene {
 
@@ -38,15 +39,17 @@ struct Events {
 struct EntityState {
     EntityIndex entity = 0;
     Transform pose;
-    std::uint8_t state = 3;                ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
-    const MovingPoints* points = nullptr;  ///< of an entity that is not one body; valid until the next command or step
+    std::uint8_t state = 3;               ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
+    const ShownPoints* points = nullptr;  ///< of an entity that is not one body; valid until the next command or step
+    std::uint64_t jump = 0;               ///< another number: its points may have moved although it slept and sleeps
 };
 
 struct SessionOptions {
     std::filesystem::path
         saved_scenes;  ///< folder of the user's scenes; journals go to its sub-folder "autosave". Empty: none is kept
-    std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
-    std::function<bool()> stop_wanted = {};  ///< called between the steps of simulation.step; true ends it early
+    std::filesystem::path demo_scenes;           ///< folder of the scenes that come with Embody
+    std::size_t take_bytes = Take::usual_bytes;  ///< maximum size of what is recorded of a run
+    std::function<bool()> stop_wanted = {};      ///< called between the steps of simulation.step; true ends it early
     /// Called at intervals with the progress of the running command; false ends it, and nothing is changed. May be
     /// empty.
     std::function<bool(std::size_t done, std::size_t total)> progress = {};
@@ -81,12 +84,20 @@ public:
     [[nodiscard]] const Document& document() const;
     [[nodiscard]] bool playing() const;
     [[nodiscard]] double time_step() const;
+    /// Simulated seconds that pass in one of the clock's while playing.
+    [[nodiscard]] double rate() const;
     /// One step of the simulation, with actions; pauses if an action requests it.
     void step();
-    /// Pose and state of every entity now (spawned ones too).
+    /// Pose and state of every entity (spawned ones too) now, or at the moment of the take that is shown.
     void read_states(std::vector<EntityState>& states) const;
+    /// The states at a time of the take, the nearest that it has; without a take, and where there is no time, those
+    /// that are shown. `moment` holds their points.
+    void read_states_at(std::optional<double> time, std::vector<EntityState>& states, Moment& moment) const;
+    /// What an action of this run spawned, also where it is gone; null for others.
+    [[nodiscard]] const Entity* spawned(EntityIndex index) const;
     /// World::debug_draw() of the simulation.
     physics::DebugDrawCount debug_draw(physics::DebugDraw& draw, const physics::DebugDrawOptions& options) const;
+    /// Of the moment that is shown.
     [[nodiscard]] double simulated_time() const;
     [[nodiscard]] std::uint64_t simulated_steps() const;
     /// The `statistics` event.

@@ -55,8 +55,7 @@ void SessionState::tell_to(ClientId recipient, json message) {
 }
 
 json SessionState::simulation_json() const {
-    const physics::StepReport& report = simulation->world().last_report();
-    return {{"state", state_name(play_state)}, {"time", report.time}, {"step", report.step}};
+    return {{"state", state_name(play_state)}, {"time", shown_time()}, {"step", shown_step()}, {"rate", past.rate}};
 }
 
 json SessionState::simulation_event() const {

@@ -36,7 +36,9 @@ Document new_document(const std::string& title) {
 }
 
 SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_options)
-    : catalog(used_catalog), options(std::move(used_options)), definitions(used_catalog, forms) {}
+    : catalog(used_catalog), options(std::move(used_options)), definitions(used_catalog, forms) {
+    past.take = Take(options.take_bytes);
+}
 
 // Simulation
 // -----------------------------------------------------------------------------------------------------------
@@ -46,6 +48,7 @@ Result<void> SessionState::rebuild_simulation() {
     if (!made.ok()) return made.error();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
+    past.clear();
     hands.clear();
     impacts = {};
     step_times.clear();
@@ -56,17 +59,28 @@ Result<void> SessionState::rebuild_simulation() {
 
 void SessionState::set_play_state(PlayState state) {
     if (state == play_state) return;
+    if (play_state == PlayState::playing && !past.shown) past.take.add_now(*simulation);
     play_state = state;
     step_times.clear();
     tell(simulation_event());
+    tell_take();
 }
 
 void SessionState::step() {
+    if (past.shown) {
+        // At its end the take goes over into the simulation.
+        if (const double time = shown_time() + document.settings.time_step; time < past.take.end())
+            show(past.take.at(time));
+        else
+            look_now();
+        return;
+    }
     hands.before_step(*simulation);
     simulation_is_pristine = false;
     simulation->step();
     step_times.push_back(std::chrono::steady_clock::now());
     if (step_times.size() > timed_steps) step_times.pop_front();
+    record_step();
     tell_step();
     tell_strikes();
     tell_impacts();
@@ -145,6 +159,7 @@ std::size_t SessionState::sync_removals(std::span<const Change> changes) {
 
 // Applies all changes or none.
 Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
+    look_now();
     put_in_document(changes);
     std::size_t synced = 0;
     Result<void> done;
@@ -283,6 +298,7 @@ Result<void> SessionState::open(Document opened, std::string opened_name, bool i
     if (is_unsaved) history.mark_unsaved();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
+    past.clear();
     hands.clear();
     impacts = {};
     told_limits = 0;
@@ -297,6 +313,7 @@ Result<void> SessionState::open(Document opened, std::string opened_name, bool i
     told_waiting.clear();
     tell_waiting_models();
     tell(simulation_event());
+    tell_take();
     events.all_poses = true;
     return {};
 }

@@ -19,6 +19,7 @@
 #include "scene/session/impacts.h"
 #include "scene/session/journal.h"
 #include "scene/session/opening.h"
+#include "scene/session/past.h"
 #include "scene/session/people.h"
 #include "scene/session/session.h"
 #include "scene/simulation/simulation.h"
@@ -51,7 +52,8 @@ struct SessionState {
     PlayState play_state = PlayState::stopped;
     Hands hands;
     std::set<ClientId> impact_listeners;  ///< clients that want to know what strikes what
-    StrongestImpacts impacts;             ///< that they were not told yet
+    Past past;
+    StrongestImpacts impacts;  ///< that they were not told yet
     Pace impact_pace{20};
     std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
     std::uint32_t told_limits = 0;                                 ///< of this run
@@ -89,7 +91,29 @@ struct SessionState {
     /// A new simulation of the document.
     Result<void> rebuild_simulation();
     void set_play_state(PlayState state);
+    /// A step of the simulation, or of the take while a moment of it is shown.
     void step();
+
+    // The take, and moments of it (session_time.cpp)
+    // -------------------------------------------------------------------
+
+    /// Time (s) and step of what is shown: now, or a moment of the take.
+    [[nodiscard]] double shown_time() const;
+    [[nodiscard]] std::uint64_t shown_step() const;
+    /// Entities that are shown, ascending.
+    [[nodiscard]] std::vector<EntityIndex> shown_entities() const;
+    /// Whether the document has the entity, or an action spawned it in this run.
+    [[nodiscard]] bool is_known(EntityIndex index) const;
+    /// Shows everybody the take at this time, s, paused; at its end and later: what is now.
+    Result<void> look_at(double time);
+    /// Shows what is now.
+    void look_now();
+    /// Goes on from the moment that is shown; tells what could not be restored.
+    Result<std::vector<std::string>> branch();
+    /// Where the take begins, for a run that starts.
+    void begin_take() { past.take.add_now(*simulation); }
+    [[nodiscard]] nlohmann::json take_json() const;
+    void tell_take();
     /// What the client holds and touches is left alone, and it is told of no impacts any more.
     void forget_hands(ClientId who);
 
@@ -132,6 +156,8 @@ private:
     /// Appends an edit to the journal.
     void keep(const nlohmann::json& changes);
     Result<void> add_to_journal(const nlohmann::json& changes);
+    void show(std::optional<Moment> moment);
+    void record_step();
     void tell_step();
     void tell_strikes();
     void tell_impacts();

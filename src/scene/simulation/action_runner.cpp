@@ -10,6 +10,13 @@ namespace embody::scene {
 using physics::ContactEvent;
 using physics::SleepEvent;
 
+namespace {
+
+constexpr double clock_error = 5e-10;  // s, half a nanosecond: the clock is a sum of steps
+constexpr double min_period = 1e-5;  // s
+
+}  // namespace
+
 ActionRunner::ActionRunner(std::vector<Action> actions, World world) : world_(std::move(world)) {
     set_actions(std::move(actions));
 }
@@ -90,16 +97,28 @@ void ActionRunner::run_on(const Action& action, EntityIndex sender, EntityIndex 
 }
 
 void ActionRunner::run_timed(const Action& action, const AtTime& at, double time) {
-    // Half a nanosecond: the clock is a sum of steps.
-    constexpr double clock_error = 5e-10;
     Progress& progress = progress_[action.id];
     if (progress.next_time > time + clock_error || (!at.repeat_every && progress.has_fired)) return;
     run(action, 0, 0);
     // At most once a step, however short the period and however long the action has been due.
     if (!at.repeat_every) return;
-    const double period = std::max(*at.repeat_every, 1e-5);
+    const double period = std::max(*at.repeat_every, min_period);
     const double missed = std::floor((time + clock_error - progress.next_time) / period);
     progress.next_time += (missed + 1) * period;
+}
+
+void ActionRunner::resume(double time, const std::set<std::uint32_t>& done) {
+    for (const Action& action : actions_) {
+        Progress& progress = progress_[action.id];
+        progress.has_fired = done.contains(action.id);
+        const auto* at = std::get_if<AtTime>(&action.trigger);
+        // What is due at this very time is not done yet: the step from here does it.
+        if (!at || progress.next_time >= time - clock_error) continue;
+        progress.has_fired = true;
+        if (!at->repeat_every) continue;
+        const double period = std::max(*at->repeat_every, min_period);
+        progress.next_time += std::ceil((time - clock_error - progress.next_time) / period) * period;
+    }
 }
 
 void ActionRunner::before_step(double time) {

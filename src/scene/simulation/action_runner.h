@@ -40,6 +40,8 @@ public:
     void after_step(const std::vector<physics::ContactEvent>& contacts, const std::vector<physics::SleepEvent>& sleeps);
     std::size_t signal(const std::string& key, const std::string& button);
     void set_actions(std::vector<Action> actions);
+    /// For a run that goes on at this time: what was due by the clock is done, and so are the actions of these ids.
+    void resume(double time, const std::set<std::uint32_t>& done);
 
     std::vector<ActionFired> fired;  ///< since the last call that cleared the list
     std::vector<Error> problems;

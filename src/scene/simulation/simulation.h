@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -18,6 +20,8 @@
 namespace embody::scene {
 
 struct FormCache;
+struct EntityMotion;
+struct Moment;
 
 /// An action that was carried out in the last step.
 struct ActionFired {
@@ -144,6 +148,19 @@ public:
     Result<void> remove_joint(std::uint32_t joint);
     /// Actions that exist already keep their state; new ones start.
     void set_actions(const std::vector<Action>& actions);
+
+    /// Calls with every entity that is in the world, ascending.
+    void visit(const std::function<void(const EntityMotion&)>& look) const;
+    /// What actions had done in a run until a moment of it.
+    struct ActionsDone {
+        std::map<EntityIndex, Entity> spawned;
+        std::set<EntityIndex> removed;
+        std::set<std::uint32_t> fired;  ///< ids of actions
+    };
+    /// Puts a world that has just been made as it was at a recorded moment, with what actions had added and without
+    /// what they had removed by then. What cannot be restored: docs/time.md. The place for World::restore() once there
+    /// is one.
+    Result<void> restore_moment(const Moment& moment, const ActionsDone& actions);
 
 private:
     Simulation();

@@ -35,6 +35,7 @@ std::span<const Command> part_commands();
 std::span<const Command> attribute_commands();
 std::span<const Command> joint_and_action_commands();
 std::span<const Command> simulation_commands();
+std::span<const Command> time_commands();
 
 /// Reads a field that must be there.
 bool need_text(FieldReader& reader, const char* name, const char* what, std::string& value);

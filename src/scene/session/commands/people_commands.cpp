@@ -55,16 +55,19 @@ Result<json> hello(SessionState& state, const json& params) {
 
     // Entities in the world but not in the document, and the reverse.
     json spawned = json::array(), despawned = json::array();
-    for (const EntityIndex index : state.simulation->entities())
-        if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
+    const std::vector<EntityIndex> shown = state.shown_entities();
+    for (const EntityIndex index : shown)
+        if (const auto found = state.past.spawned.find(index); found != state.past.spawned.end())
+            spawned.push_back(entity_to_json(found->second.entity));
     for (const Entity& entity : state.document.entities)
-        if (!state.simulation->contains(entity.index) && !state.simulation->is_waiting(entity.index))
+        if (!std::ranges::binary_search(shown, entity.index) && !state.simulation->is_waiting(entity.index))
             despawned.push_back(entity.index);
     const auto value = [](const std::optional<std::string>& text) { return text ? json(*text) : json(nullptr); };
     return json{{"version", version_text},
                 {"scene", document_to_json(state.document)},
                 {"revision", state.revision},
                 {"simulation", state.simulation_json()},
+                {"take", state.take_json()},
                 {"frame_version", frame_version},
                 {"undo", value(client.undo)},
                 {"redo", value(client.redo)},

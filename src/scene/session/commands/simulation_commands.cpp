@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session/commands/commands.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace embody::scene {
@@ -24,8 +25,11 @@ Result<void> read_nothing(const json& params) {
 
 // A run starts from the same world, independent of earlier edits, so that it is bitwise reproducible.
 Result<void> leave_stop(SessionState& state) {
-    if (state.play_state != PlayState::stopped || state.simulation_is_pristine) return {};
-    return state.rebuild_simulation();
+    if (state.play_state != PlayState::stopped) return {};
+    if (!state.simulation_is_pristine)
+        if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made;
+    state.begin_take();
+    return {};
 }
 
 Result<json> play(SessionState& state, const json& params) {
@@ -52,7 +56,9 @@ Result<json> step(SessionState& state, const json& params) {
     state.play_state = PlayState::paused;
     const auto stop_wanted = [&state] { return state.options.stop_wanted && state.options.stop_wanted(); };
     for (std::uint32_t i = 0; i < count && !stop_wanted(); ++i) state.step();
+    if (!state.past.shown) state.past.take.add_now(*state.simulation);
     state.tell(state.simulation_event());
+    state.tell_take();
     return json::object();
 }
 
@@ -61,17 +67,24 @@ Result<json> reset(SessionState& state, const json& params) {
     if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made.error();
     state.play_state = PlayState::stopped;
     state.tell(state.simulation_event());
+    state.tell_take();
     state.events.all_poses = true;
     return json::object();
 }
 
 Result<json> keep(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
+    // The poses that are shown: of now, or of a moment of the take.
+    std::map<EntityIndex, Transform> shown;
+    if (state.past.shown)
+        for (const EntityMoment& was : state.past.shown->entities) shown[was.motion.entity] = was.motion.pose;
+    else
+        for (const EntityIndex index : state.simulation->entities()) shown[index] = state.simulation->pose(index);
     Edit edit = state.start_edit("Keep poses");
     for (const Entity& entity : state.document.entities) {
-        if (!state.simulation->contains(entity.index) || entity.locked) continue;
-        const Transform pose = state.simulation->pose(entity.index);
-        if (pose != entity.pose) edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose});
+        const auto pose = shown.find(entity.index);
+        if (pose == shown.end() || entity.locked || pose->second == entity.pose) continue;
+        edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose->second});
     }
 
     // Now the document has these poses: the run is over.
@@ -79,6 +92,7 @@ Result<json> keep(SessionState& state, const json& params) {
     if (Result<void> kept = state.commit(std::move(edit)); !kept.ok()) return kept.error();
     if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made.error();
     state.tell(state.simulation_event());
+    state.tell_take();
     state.events.all_poses = true;
     return json::object();
 }
@@ -97,7 +111,12 @@ std::optional<Quat> read_rotation(FieldReader& reader) {
     return normalized(rotation);
 }
 
-Error stopped(const char* command, const char* remedy) { return {command, "the simulation is stopped", remedy}; }
+// Hands act on what is now, in a run.
+Result<void> check_present(const SessionState& state, const char* command, const char* remedy) {
+    if (state.play_state == PlayState::stopped) return Error{command, "the simulation is stopped", remedy};
+    if (!state.past.shown) return {};
+    return Error{command, "the scene shows what has been", "go on from there with time.branch, or play to the end"};
+}
 
 Result<json> grab(SessionState& state, const json& params) {
     std::optional<Error> error;
@@ -113,10 +132,13 @@ Result<json> grab(SessionState& state, const json& params) {
     reader.number("strength", strength, {min_strength, max_strength});
     const HandName hand = read_hand(reader, state);
     if (!reader.finish()) return *error;
-    if (state.play_state == PlayState::stopped)
-        return stopped("simulation.grab", "play first; to move things use entity.transform");
+    if (Result<void> present =
+            check_present(state, "simulation.grab", "play first; to move things use entity.transform");
+        !present.ok())
+        return present.error();
     if (Result<void> held = state.hands.grab(*state.simulation, hand, index, point, strength); !held.ok())
         return held.error();
+    state.past.marks.add({state.shown_time(), Mark::Kind::hand, index});
     return done(state.hands.move(*state.simulation, hand, place));
 }
 
@@ -154,8 +176,9 @@ Result<json> touch(SessionState& state, const json& params) {
         state.hands.stop_touching(*state.simulation, hand);
         return json::object();
     }
-    if (state.play_state == PlayState::stopped)
-        return stopped("simulation.touch", "play first: what is stopped cannot be pushed");
+    if (Result<void> present = check_present(state, "simulation.touch", "play first: what is stopped cannot be pushed");
+        !present.ok())
+        return present.error();
     ball.place.position = *position;
     return done(state.hands.touch(*state.simulation, hand, ball));
 }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/past.h"
+
+#include <algorithm>
+
+namespace embody::scene {
+
+namespace {
+
+/// Of more marks the weaker half of the contacts goes.
+constexpr std::size_t max_marks = 4000;
+
+}  // namespace
+
+void Marks::add(Mark mark) {
+    ++revision_;
+    marks_.push_back(std::move(mark));
+    if (marks_.size() <= max_marks) return;
+    std::vector<double> impulses;
+    for (const Mark& each : marks_)
+        if (each.kind == Mark::Kind::contact) impulses.push_back(each.impulse);
+    // Where nearly all are something else, the older half goes.
+    if (impulses.size() < max_marks / 4) {
+        marks_.erase(marks_.begin(), marks_.begin() + max_marks / 2);
+        return;
+    }
+    const auto middle = impulses.begin() + static_cast<std::ptrdiff_t>(impulses.size() / 2);
+    std::ranges::nth_element(impulses, middle);
+    const double weakest = *middle;
+    std::erase_if(marks_,
+                  [&](const Mark& each) { return each.kind == Mark::Kind::contact && each.impulse <= weakest; });
+}
+
+void Marks::cut_after(double time) {
+    ++revision_;
+    std::erase_if(marks_, [time](const Mark& mark) { return mark.time > time; });
+}
+
+void Marks::cut_before(double time) {
+    if (marks_.empty() || marks_.front().time >= time) return;
+    ++revision_;
+    std::erase_if(marks_, [time](const Mark& mark) { return mark.time < time; });
+}
+
+void Marks::clear() {
+    ++revision_;
+    marks_.clear();
+}
+
+void Past::clear() {
+    take.clear();
+    marks.clear();
+    spawned.clear();
+    removed.clear();
+    fired.clear();
+    if (shown) ++jumps;
+    shown.reset();
+}
+
+}  // namespace embody::scene
