@@ -3,6 +3,7 @@ import "./style/theme.css";
 import "./style/layout.css";
 import "./style/panels.css";
 import "./style/narrow.css";
+import "./style/time.css";
 import { ArrangeBar } from "./panels/arrange_bar";
 import { AttributeList } from "./panels/attribute_list";
 import { openContextMenu } from "./panels/context_menu";
@@ -33,7 +34,9 @@ import { Toolbar } from "./panels/toolbar";
 import { Tour } from "./panels/tour";
 import { Studio } from "./studio";
 import { offerTestHook } from "./test_hook";
-import { makeActions, type UserAction } from "./tools/actions";
+import { timeActions } from "./time/time_actions";
+import { Timeline } from "./time/timeline";
+import { keepPoses, makeActions, type UserAction } from "./tools/actions";
 import { Gizmo } from "./tools/gizmo";
 import { Keyboard } from "./tools/keys";
 import { Pointer } from "./tools/pointer";
@@ -80,16 +83,20 @@ function start(): void {
   });
   actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
+  actions.push(...timeActions(studio, () => void keepPoses(studio)));
+
   new Keyboard(studio, actions, pointer);
   pointer.menuWanted.on((at) => openContextMenu(studio, actions, at));
   new FileDrop(studio, () => browser.refresh());
   const toolbar = new Toolbar(studio, gizmo, actions, new PeopleBar(studio).root);
+  const timeline = new Timeline(studio, actions);
+  studio.connection.frame.on(() => timeline.tick());
   const entityFields = new EntityFields(studio);
   const attributes = new AttributeList(studio);
   show(entityFields.root, false);
   show(attributes.root, false);
   const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root);
-  app.append(toolbar.root, left.root, right, new StatusBar(studio).root);
+  app.append(toolbar.root, left.root, right, timeline.root, new StatusBar(studio).root);
   const layout = new Layout(studio, app, scene, { left: left.root, right });
   actions.push(...layout.actions);
   dragIn.began.on(() => layout.freeScene());
@@ -117,7 +124,7 @@ function start(): void {
     if (event.event === "impacts") sounds.take(event.impacts);
     else if (event.event === "hand" && headset.isRunning) headset.interaction.shake(event.hand, event.impulse);
   });
-  offerTestHook(studio, headset, sounds);
+  offerTestHook(studio, headset, sounds, timeline);
   studio.connection.open();
 }
 

@@ -7,6 +7,7 @@ import type { People } from "./document/people";
 import type { PickedModel } from "./document/picked_model";
 import type { Opening } from "./document/opening";
 import type { Playback } from "./document/playback";
+import type { Take } from "./document/take";
 import type { SceneDocument } from "./document/scene_document";
 import type { Selection } from "./document/selection";
 import type { Preferences } from "./preferences";
@@ -29,6 +30,7 @@ export interface Parts {
   readonly notices: Notices;
   readonly document: SceneDocument;
   readonly playback: Playback;
+  readonly take: Take;
   readonly selection: Selection;
   readonly picked: PickedModel;
   readonly people: People;

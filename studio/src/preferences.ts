@@ -40,6 +40,10 @@ export interface PreferenceValues {
   folded: readonly ("left" | "right")[];
   /** Impacts are heard. */
   sounds: boolean;
+  /** Only the row of buttons of the timeline is shown. */
+  timelineFolded: boolean;
+  /** Curves of the selection are shown under the timeline. */
+  plots: boolean;
   vr: VrSettings;
 }
 
@@ -64,6 +68,8 @@ const DEFAULTS: PreferenceValues = {
   toured: false,
   folded: [],
   sounds: true,
+  timelineFolded: false,
+  plots: false,
   vr: VR_DEFAULTS,
 };
 

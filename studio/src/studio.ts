@@ -11,7 +11,9 @@ import { thisPerson } from "./document/person";
 import { PickedModel } from "./document/picked_model";
 import { Playback } from "./document/playback";
 import { SceneDocument } from "./document/scene_document";
+import { setBlendRate } from "./document/blend";
 import { Selection } from "./document/selection";
+import { Take } from "./document/take";
 import type { Found, Parts } from "./parts";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
@@ -36,6 +38,7 @@ export class Studio implements Parts {
   readonly server = new Server(this.connection, this.notices);
   readonly document = new SceneDocument();
   readonly playback = new Playback();
+  readonly take = new Take();
   readonly selection = new Selection();
   readonly picked = new PickedModel();
   readonly people = new People();
@@ -150,7 +153,7 @@ export class Studio implements Parts {
       this.server.changed.emit();
     });
     this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
-    this.connection.event.on((event) => this.take(event));
+    this.connection.event.on((event) => this.receive(event));
     this.connection.debug.on((frame) => {
       // A frame may still arrive after debug drawing was turned off.
       this.view.debug.show(this.preferences.get("debug").length > 0 ? frame : null);
@@ -158,6 +161,7 @@ export class Studio implements Parts {
       this.connection.wantFrame();
     });
     this.connection.frame.on((frame) => {
+      if (this.view.isCapturing) return this.connection.wantFrame();
       this.motion.take(frame, performance.now(), this.playback.playing);
       this.entities.takePoints(frame, performance.now(), this.playback.playing);
       this.playback.goOn(frame);
@@ -197,6 +201,8 @@ export class Studio implements Parts {
     if (this.preferences.get("userName")) void this.tellName();
     if (this.preferences.get("debug").length > 0) void this.askDebug();
     this.playback.simulation = hello.simulation;
+    setBlendRate(hello.simulation.rate ?? 1);
+    if (hello.take) this.take.take(hello.take);
     const isSame = this.wasGreeted && this.document.name === hello.name && this.document.title === (hello.scene.title ?? "Untitled");
     this.wasGreeted = true;
     this.document.reset(hello);
@@ -234,13 +240,16 @@ export class Studio implements Parts {
     this.notices.tell({ level: "info", text: pastOf(event.label), action });
   }
 
-  private take(event: ServerEvent): void {
+  private receive(event: ServerEvent): void {
     switch (event.event) {
       case "document":
         this.takeDocument(event);
         break;
       case "simulation":
         this.takeSimulation(event);
+        break;
+      case "take":
+        this.take.take(event);
         break;
       case "spawned":
         this.document.spawn(event.entity);
@@ -303,7 +312,8 @@ export class Studio implements Parts {
   /** Where one processor both simulates and draws, pictures are drawn less often until the simulation keeps pace. */
   private sharePower({ real_time_factor: rate }: Statistics): void {
     if (!this.onOneProcessor) return;
-    const change = this.playback.playing && rate < KEEPS_PACE ? 20 : -10;
+    const wanted = this.playback.simulation.rate ?? 1;
+    const change = this.playback.playing && rate < KEEPS_PACE * wanted ? 20 : -10;
     this.view.pace = Math.min(Math.max(this.view.pace + change, 0), LONGEST_PACE_MS);
   }
 
@@ -326,9 +336,10 @@ export class Studio implements Parts {
     if (answer) this.preferences.set("recoveriesKnown", answer.scenes.filter(({ kind }) => kind === "recovery").map(({ name }) => name));
   }
 
-  private takeSimulation({ state, time, step }: Simulation): void {
+  private takeSimulation({ state, time, step, rate = 1 }: Simulation): void {
     const restarted = state === "stopped" && this.playback.simulation.state !== "stopped";
-    this.playback.simulation = { state, time, step };
+    this.playback.simulation = { state, time, step, rate };
+    setBlendRate(rate);
     if (restarted) {
       this.document.forgetSpawned();
       this.entities.mend();

@@ -4,6 +4,8 @@ import type { BodyState } from "./document/motion";
 import { nameOf } from "./document/scene_document";
 import type { Studio } from "./studio";
 import type { ContactSounds, Heard } from "./tools/contact_sounds";
+import type { Curve, TakeState, TimeMark } from "./connection/messages";
+import type { Timeline } from "./time/timeline";
 import { presentPoses } from "./tools/poses";
 import type { VrSession } from "./vr/session";
 import { type VrHook, vrHook } from "./vr/test_view";
@@ -43,6 +45,9 @@ export interface TestHook {
   readonly vr: VrHook;
   /** Sounds of impacts that were made, the newest last. */
   heard(): readonly Heard[];
+  /** What is recorded of the run, and its marks; what is plotted. */
+  take(): { state: TakeState; marks: readonly TimeMark[] };
+  plotted(): { times: readonly number[]; curves: readonly Curve[] };
   /** Draws the other people or not: pictures of two pages differ by them. */
   showPeople(shown: boolean): void;
   /** The place where the page shows that what is carried over the scene would lie; null: it shows none. */
@@ -54,7 +59,7 @@ export interface TestHook {
   resume(): void;
 }
 
-export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds): void {
+export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds, timeline: Timeline): void {
   const hook: TestHook = {
     connected: () => studio.server.isOpen && studio.server.ready,
     simulation: () => studio.playback.simulation,
@@ -105,6 +110,8 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     }),
     vr: vrHook(studio, headset),
     heard: () => sounds.heard,
+    take: () => ({ state: studio.take.state, marks: studio.take.marks }),
+    plotted: () => timeline.plots.told,
     showPeople: (shown) => {
       studio.view.people.group.visible = shown;
       studio.view.invalidate();

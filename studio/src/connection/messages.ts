@@ -153,6 +153,41 @@ export interface Simulation {
   state: SimulationState;
   time: number;
   step: number;
+  /** Simulated seconds in one of the clock's, as it was set. */
+  rate?: number;
+}
+
+/** What is recorded of the run; times in simulated seconds. */
+export interface TakeState {
+  start: number;
+  end: number;
+  /** The moment that is shown; null: what is now. */
+  shown: number | null;
+  bytes: number;
+  samples: number;
+  /** Another number: there are other marks. */
+  marks: number;
+}
+
+/** Something that happened in the run. */
+export interface TimeMark {
+  time: number;
+  kind: "contact" | "action" | "rope_broke" | "hand" | "branch";
+  a?: number;
+  b?: number;
+  /** N s. */
+  impulse?: number;
+  name?: string;
+}
+
+export type Quantity = "height" | "x" | "z" | "speed" | "spin" | "kinetic_energy" | "momentum";
+
+/** Values at the times that were told with them; null where the thing was not there. */
+export interface Curve {
+  index: number;
+  quantity: Quantity;
+  unit: string;
+  values: (number | null)[];
 }
 
 export interface Statistics {
@@ -224,6 +259,7 @@ export interface Hello {
   scene: Scene;
   revision: number;
   simulation: Simulation;
+  take?: TakeState;
   frame_version: number;
   /** Labels of what this person can undo and redo. */
   undo: string | null;
@@ -345,6 +381,12 @@ export interface Commands {
   "simulation.release": [{ hand?: string }, unknown];
   "simulation.listen": [{ impacts: boolean }, unknown];
   "simulation.touch": [{ hand: string; position?: Vector; rotation?: Quaternion; radius?: number }, unknown];
+  "simulation.set_rate": [{ rate: number }, unknown];
+  "time.seek": [{ time: number }, { time: number; step: number }];
+  "time.branch": [Record<string, never>, { time: number; notes: string[] }];
+  "time.marks": [Record<string, never>, { marks: TimeMark[]; revision: number }];
+  "time.curves": [{ curves: { index: number; quantity: Quantity }[]; from?: number; to?: number; samples?: number }, { times: number[]; curves: Curve[] }];
+  "time.frame": [{ time?: number }, { frame: string; spawned: Entity[] }];
   "debug.draw": [{ show: readonly DebugName[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];
 }
@@ -405,6 +447,7 @@ export interface Progress {
 export type ServerEvent =
   | DocumentEvent
   | ({ event: "simulation" } & Simulation)
+  | ({ event: "take" } & TakeState)
   | { event: "spawned"; entity: Entity }
   | { event: "despawned"; index: number }
   | { event: "waiting"; indices: number[] }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Quaternion, Vector3 } from "three";
 import { POSE_FLOATS, type Frame } from "../connection/frame";
+import { blend } from "./blend";
 
 /** The simulation's state of a body; the numbers are the protocol's. */
 export enum BodyState {
@@ -20,8 +21,6 @@ interface Track {
   duration: number;
   state: BodyState;
 }
-
-const LONGEST_BLEND_MS = 120;
 
 /**
  * The present pose of every entity. It moves to a frame's pose during the time since the frame before, so that motion is smooth at
@@ -60,7 +59,7 @@ export class Motion {
   }
 
   take(frame: Frame, now: number, smooth: boolean): void {
-    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    const duration = smooth ? Math.min(now - this.lastFrame, blend.longest) : 0;
     this.lastFrame = now;
     for (let record = 0; record < frame.indices.length; ++record) {
       const index = frame.indices[record]!;

@@ -62,7 +62,8 @@ export class SceneDocument {
 
   /** An action added an entity to the running world. */
   spawn(entity: Entity): void {
-    this.spawned.set(entity.index, entity);
+    // What the document has comes back: an action had removed it.
+    if (!this.entities.has(entity.index)) this.spawned.set(entity.index, entity);
     this.absent.delete(entity.index);
     this.changed.emit({ ...nothingChanged(), entities: [entity.index] });
   }

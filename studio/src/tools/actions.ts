@@ -13,6 +13,8 @@ import { PRIMITIVES } from "./primitives";
 export interface UserAction {
   id: string;
   label: string;
+  /** For a button with words; missing: the label. */
+  short?: string;
   group: string;
   /** Names as keyName() writes them; the first is shown. */
   keys: string[];
@@ -173,7 +175,7 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
   ];
 }
 
-async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document" | "entities">): Promise<void> {
+export async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document" | "entities">): Promise<void> {
   if (!(await parts.server.command("simulation.keep", {}))) return;
   const { document, entities } = parts;
   const changeForm = [...document.entities.keys()].some((index) => entities.softs.has(index) || entities.clouds.of(index));

@@ -63,6 +63,10 @@ export class Environment {
     this.sky.intensity = high ? 0.5 : 2.1;
   }
 
+  get isGridShown(): boolean {
+    return this.grid.visible;
+  }
+
   showGrid(shown: boolean): void {
     this.grid.visible = shown;
   }

@@ -137,6 +137,11 @@ export class LiquidSurface {
     return this.geometry.drawRange.count / 3;
   }
 
+  /** The surface of the present positions is there. */
+  get isSettled(): boolean {
+    return !this.isWaiting && this.shownPart === 1;
+  }
+
   accepts(set: PointSet): boolean {
     return set.liquid;
   }

@@ -6,9 +6,7 @@ import { LiquidSurface } from "./liquid_surface";
 import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import { PointCloud } from "./point_cloud";
 import type { Quality } from "./tint";
-
-/** Longest time in which points move to a frame's positions, ms; the same as for poses. */
-const LONGEST_BLEND_MS = 120;
+import { blend } from "../document/blend";
 
 /** Drawings of all entities that have points: balls, or the surface of a liquid. */
 export class PointClouds {
@@ -34,7 +32,7 @@ export class PointClouds {
     frame.indices.forEach((index, record) => {
       if (!frame.pointed[record] && this.drop(index)) changed.push(index);
     });
-    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    const duration = smooth ? Math.min(now - this.lastFrame, blend.longest) : 0;
     this.lastFrame = now;
     for (const set of frame.sets) {
       // Points without a radius carry a drawn form and are not drawn themselves.
@@ -68,6 +66,21 @@ export class PointClouds {
     let moving = false;
     for (const cloud of this.clouds.values()) moving = cloud.advance(now) || moving;
     return moving;
+  }
+
+  /** Moves all points to their positions at once, and waits for the surfaces of liquids. */
+  async settle(now: number): Promise<void> {
+    for (;;) {
+      this.advance(now);
+      if ([...this.clouds.values()].every((cloud) => !cloud.isLiquid || cloud.isSettled)) return;
+      await new Promise<void>((done) => {
+        const stop = [this.surfaced.on(() => end()), this.lost.on(() => end())];
+        const end = () => {
+          for (const each of stop) each();
+          done();
+        };
+      });
+    }
   }
 
   setQuality(quality: Quality): void {

@@ -5,9 +5,7 @@ import type { Frame, PointSet } from "../connection/frame";
 import type { Drawable } from "./drawable";
 import type { Quality } from "./tint";
 import { SoftForm, SoftSkin } from "./soft_form";
-
-/** Longest time in which nodes move to a frame's positions, ms; the same as for poses. */
-const LONGEST_BLEND_MS = 120;
+import { blend } from "../document/blend";
 
 interface Nodes {
   from: Float32Array;
@@ -50,7 +48,7 @@ export class SoftBodies {
     frame.indices.forEach((index, record) => {
       if (!frame.pointed[record] && this.drop(index)) changed.push(index);
     });
-    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    const duration = smooth ? Math.min(now - this.lastFrame, blend.longest) : 0;
     this.lastFrame = now;
     for (const set of frame.sets) {
       if (set.radius > 0) {

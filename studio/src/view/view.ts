@@ -59,13 +59,16 @@ export class View {
   frames = 0;
   /** Shortest time between pictures of a moving scene, ms; what the user does is drawn at once. */
   pace = 0;
+  /** A film or a picture is being drawn: the page itself is not, and frames of the server are left alone. */
+  isCapturing = false;
   private headset: Headset | null = null;
   private background: Color | null = null;
   private waiting = 0;
   private still = 0;
   /** The present picture was drawn at the higher resolution. */
   private isFine = false;
-  private readonly hasSmoothEdges: boolean;
+  /** The canvas is antialiased. */
+  readonly hasSmoothEdges: boolean;
   private asked = false;
   private halted = false;
   private lastFrame = 0;
@@ -239,18 +242,8 @@ export class View {
     if (!this.headset) this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
-    const bodiesMove = this.motion.advance(now);
-    const moving = this.entities.advance(now) || bodiesMove;
-    this.beforeFrame.emit(now);
-    this.entities.update(now);
-    this.collision.update(now);
-    this.pins.update();
-    this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
+    const moving = this.advance(now);
     const peopleMove = this.people.advance(now, this.headset?.camera ?? this.rig.camera, this.size, this.canvas.clientHeight);
-    const { target, distance } = this.headset ?? this.rig;
-    const sunMoved = this.environment.follow(target, distance);
-    if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
-    this.entities.shadowsAreOld = false;
     this.renderer.render(this.scene, this.headset?.camera ?? this.rig.camera);
     ++this.frames;
     this.afterFrame.emit();
@@ -258,6 +251,22 @@ export class View {
     if (flying || peopleMove) this.invalidate();
     else if (moving) this.drawSoon();
     else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
+  }
+
+  /** Brings all that is drawn to the time `now` of the page's clock; returns whether anything is still on its way. */
+  advance(now: number): boolean {
+    const bodiesMove = this.motion.advance(now);
+    const moving = this.entities.advance(now) || bodiesMove;
+    this.beforeFrame.emit(now);
+    this.entities.update(now);
+    this.collision.update(now);
+    this.pins.update();
+    this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
+    const { target, distance } = this.headset ?? this.rig;
+    const sunMoved = this.environment.follow(target, distance);
+    if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
+    this.entities.shadowsAreOld = false;
+    return moving;
   }
 
   /** Draws the last picture again, antialiased by several samples for each pixel. */
@@ -282,7 +291,8 @@ export class View {
     this.slow.emit();
   }
 
-  private resize(): void {
+  /** Takes over the size of the page. */
+  resize(): void {
     const frame = this.canvas.parentElement!.getBoundingClientRect();
     if (frame.width < 1 || frame.height < 1 || this.renderer.xr.isPresenting) return;
     this.rig.fit(frame.width / frame.height);
