@@ -54,7 +54,7 @@ TEST_F(RightsTest, WhoMayLookChangesNothingByAnyCommand) {
     for (const auto family :
          {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(), entity_commands(),
           placement_commands(), arrange_commands(), group_commands(), part_commands(), attribute_commands(),
-          joint_and_action_commands(), simulation_commands()})
+          joint_and_action_commands(), simulation_commands(), time_commands()})
         for (const Command& command : family) {
             const Result<json> done = attempt(guest, command.name);
             const bool is_right = !done.ok() && done.error().why.starts_with("is not allowed");
@@ -66,7 +66,8 @@ TEST_F(RightsTest, WhoMayLookChangesNothingByAnyCommand) {
         "catalog.categories", "catalog.history", "catalog.model",          "catalog.search",         "catalog.stop",
         "client.present",     "client.set_name", "client.set_rights",      "entity.attributes",      "entity.copy",
         "entity.preview",     "hello",           "entity.collision_shape", "entity.simulation_mesh", "scene.answer",
-        "scene.list",         "scene.pick",      "scene.versions",         "simulation.listen"};
+        "scene.list",         "scene.pick",      "scene.versions",         "simulation.listen",      "time.curves",
+        "time.marks"};
     for (const std::string& name : answered) EXPECT_TRUE(telling.contains(name)) << name << " is open to lookers";
     const json after = run("hello", json::object(), host);
     for (const char* field : {"scene", "revision", "simulation", "undo", "unsaved"})

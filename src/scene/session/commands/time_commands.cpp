@@ -215,11 +215,11 @@ Result<json> curves(SessionState& state, const json& params) {
 }  // namespace
 
 std::span<const Command> time_commands() {
-    static constexpr Command commands[] = {{"simulation.set_rate", set_rate},
-                                           {"time.seek", seek},
-                                           {"time.branch", branch},
-                                           {"time.marks", marks},
-                                           {"time.curves", curves}};
+    static constexpr Command commands[] = {{"simulation.set_rate", set_rate, Need::run},
+                                           {"time.seek", seek, Need::run},
+                                           {"time.branch", branch, Need::run},
+                                           {"time.marks", marks, Need::look},
+                                           {"time.curves", curves, Need::look}};
     return commands;
 }
 
