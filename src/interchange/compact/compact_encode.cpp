@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "interchange/compact/compact_geometry.h"
+#include "interchange/compact/detail_levels.h"
 #include "interchange/compact/glb_container.h"
+#include "interchange/compact/stored_part.h"
 #include "interchange/compact/texture_reduction.h"
 #include "math/bounds.h"
 
@@ -23,18 +25,6 @@ constexpr int type_byte = 5120, type_unsigned_short = 5123, type_unsigned_int = 
 constexpr int target_vertices = 34962, target_indices = 34963;
 constexpr double grid = 65535;
 constexpr int normal_bits = 8, texture_bits = 15;
-
-using GridPoint = std::array<std::uint16_t, 4>;  // x y z and padding to 4 bytes
-using OctNormal = std::array<std::int8_t, 4>;
-using ExpTexture = std::array<std::uint32_t, 2>;
-
-/// Vertices as stored, before they are packed; `textures` is empty where the material has none.
-struct QuantizedPart {
-    std::vector<GridPoint> positions;
-    std::vector<OctNormal> normals;
-    std::vector<ExpTexture> textures;
-    std::vector<unsigned> indices;
-};
 
 Result<void> check(const RawScene& scene) {
     std::size_t triangles = 0;
@@ -115,8 +105,8 @@ private:
         return {rounded(q.x), rounded(q.y), rounded(q.z), 0};
     }
 
-    QuantizedPart quantize(const std::vector<const RawMesh*>& meshes, bool textured) const {
-        QuantizedPart part;
+    StoredPart quantize(const std::vector<const RawMesh*>& meshes, bool textured) const {
+        StoredPart part;
         std::vector<std::array<float, 4>> normals;
         std::vector<std::array<float, 2>> textures;
         for (const RawMesh* mesh : meshes) {
@@ -150,7 +140,7 @@ private:
     }
 
     /// Equal vertices become one; order for the packers and the graphics card's caches.
-    static void order(QuantizedPart& part) {
+    static void order(StoredPart& part) {
         std::vector<meshopt_Stream> streams{{part.positions.data(), sizeof(GridPoint), sizeof(GridPoint)},
                                             {part.normals.data(), sizeof(OctNormal), sizeof(OctNormal)}};
         if (!part.textures.empty()) streams.push_back({part.textures.data(), sizeof(ExpTexture), sizeof(ExpTexture)});
@@ -164,7 +154,7 @@ private:
         apply(part, remap, count);
     }
 
-    static void apply(QuantizedPart& part, const std::vector<unsigned>& remap, std::size_t count) {
+    static void apply(StoredPart& part, const std::vector<unsigned>& remap, std::size_t count) {
         const auto remap_stream = [&](auto& stream) {
             if (stream.empty()) return;
             meshopt_remapVertexBuffer(stream.data(), stream.data(), remap.size(), sizeof stream[0], remap.data());
@@ -182,7 +172,7 @@ private:
         const bool textured =
             stored_material >= 0 &&
             materials_[static_cast<std::size_t>(stored_material)]["pbrMetallicRoughness"].contains("baseColorTexture");
-        QuantizedPart part = quantize(meshes, textured);
+        StoredPart part = quantize(meshes, textured);
         if (part.indices.empty()) return;
         order(part);
 
@@ -358,12 +348,10 @@ Result<CompactGeometry> encode(const RawScene& scene) {
     if (const auto checked = check(scene); !checked) return checked.error();
     CompactGeometry result = CompactEncoder(scene).encode();
     if (result.triangles == 0) return Error{"scene", "has no triangle with an area"};
+    auto with_levels = with_detail_levels(result.bytes);
+    if (!with_levels) return with_levels.error();
+    result.bytes = std::move(*with_levels);
     return result;
-}
-
-Result<std::vector<std::uint8_t>> to_glb(std::span<const std::uint8_t> bytes) {
-    if (const auto view = split_glb(bytes); !view) return view.error();
-    return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
 }
 
 }  // namespace embody::interchange

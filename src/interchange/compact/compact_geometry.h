@@ -34,7 +34,8 @@ Result<CompactGeometry> encode(const RawScene& scene);
 /// their own: weld where topology matters. Safe on any bytes: damaged, truncated or foreign ones are an error.
 Result<geometry::TriangleMesh> decode_mesh(std::span<const std::uint8_t> bytes);
 
-/// Converts to the form that a glTF viewer reads. The stored form of version 1 is that already.
+/// Converts to the form that a glTF viewer reads, with levels of detail (detail_levels.h) as data of ours, which others
+/// pass over. What was stored before there were levels gets them here.
 Result<std::vector<std::uint8_t>> to_glb(std::span<const std::uint8_t> bytes);
 
 }  // namespace embody::interchange
