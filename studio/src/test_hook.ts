@@ -20,6 +20,16 @@ export interface TestHook {
   /** Models that are being loaded, and pictures drawn so far. */
   loading(): number;
   frames(): number;
+  /** Draw calls and triangles of the last picture. */
+  drawn(): { calls: number; triangles: number };
+  /** The level of detail that an entity was last drawn in: 0 is full, -1 not at all. */
+  levelOf(index: number): number | undefined;
+  /** How dark the contact shadow of an entity is, 0 … 1, and how high it lies, m; null: it has none. */
+  contactShadow(index: number): { darkness: number; height: number } | null;
+  /** Draws everything in full detail, or not any more. */
+  showFullDetail(full: boolean): void;
+  /** Draws so many pictures while the camera moves sideways; the growth of the page's memory by a picture, bytes. */
+  measure(pictures: number): Promise<number>;
   /** The place on the page where the centre of an entity's box is drawn. */
   seenAt(index: number): { x: number; y: number } | null;
   /** Red, green, blue and amount of the state colour that an entity is drawn with. */
@@ -59,6 +69,11 @@ export interface TestHook {
   resume(): void;
 }
 
+/** Of Chromium alone, which tells it exactly with --enable-precise-memory-info. */
+function memoryInUse(): number {
+  return (performance as unknown as { memory?: { usedJSHeapSize: number } }).memory?.usedJSHeapSize ?? 0;
+}
+
 export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds, timeline: Timeline): void {
   const hook: TestHook = {
     connected: () => studio.server.isOpen && studio.server.ready,
@@ -80,6 +95,34 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
       }),
     loading: () => studio.entities.loading,
     frames: () => studio.view.frames,
+    drawn: () => ({ calls: studio.view.renderer.info.render.calls, triangles: studio.view.renderer.info.render.triangles }),
+    levelOf: (index) => studio.entities.levelOf(index),
+    contactShadow: (index) => {
+      const { contactShadows } = studio.view;
+      const height = contactShadows.heightOf(index);
+      return height === null ? null : { darkness: contactShadows.darknessOf(index), height };
+    },
+    showFullDetail: (full) => {
+      studio.view.viewer.full = full;
+      studio.view.invalidate();
+    },
+    measure: async (pictures) => {
+      const { view } = studio;
+      let grown = 0;
+      for (let picture = 0; picture < pictures; ++picture) {
+        const before = memoryInUse();
+        await new Promise<void>((drawn) => {
+          const end = view.afterFrame.on(() => {
+            end();
+            drawn();
+          });
+          view.rig.pan(1, 0, view.canvas.clientHeight);
+        });
+        // Less than before: what was left lying was collected.
+        grown += Math.max(0, memoryInUse() - before);
+      }
+      return Math.round(grown / pictures);
+    },
     seenAt: (index) => {
       const bounds = studio.entities.boundsOf([index], performance.now());
       if (bounds.isEmpty()) return null;

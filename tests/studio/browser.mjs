@@ -22,10 +22,10 @@ const FLAGS = [
   "--ignore-gpu-blocklist",
 ];
 
-export async function openBrowser() {
+export async function openBrowser(more = []) {
   const executablePath = PROGRAMS.find((program) => program && existsSync(program));
   if (!executablePath) throw new Error("no Chromium found: install the package chromium or set EMBODY_CHROMIUM");
-  return chromium.launch({ executablePath, args: FLAGS, headless: true });
+  return chromium.launch({ executablePath, args: [...FLAGS, ...more], headless: true });
 }
 
 /** A connected page of the Studio, with its models drawn. Errors of the page fail the test through `faults`. */

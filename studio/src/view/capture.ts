@@ -70,7 +70,7 @@ export class Capture {
   }
 
   private eachTile(put: (x: number, y: number, width: number, height: number) => void): void {
-    const { renderer, scene, rig } = this.view;
+    const { renderer, rig } = this.view;
     const gl = renderer.getContext();
     const most = Math.min(LONGEST_TILE, gl.getParameter(gl.MAX_RENDERBUFFER_SIZE) as number, gl.getParameter(gl.MAX_TEXTURE_SIZE) as number);
     const side = Math.floor(most / this.fineness);
@@ -80,7 +80,7 @@ export class Capture {
         const height = Math.min(side, this.height - y);
         renderer.setSize(width * this.fineness, height * this.fineness, false);
         rig.camera.setViewOffset(this.width, this.height, x, y, width, height);
-        renderer.render(scene, rig.camera);
+        this.view.render();
         put(x, y, width, height);
       }
     rig.camera.clearViewOffset();

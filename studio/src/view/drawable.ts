@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-import { Box3, type BufferGeometry, Color, type Material, Matrix4, type MeshStandardMaterial, SRGBColorSpace } from "three";
+import { Box3, type BufferAttribute, type BufferGeometry, Color, type Material, Matrix4, type MeshStandardMaterial, SRGBColorSpace } from "three";
+import { colorOfPart } from "./merge_parts";
 
 /** One mesh of a drawable; `matrix` places it in the entity's frame. */
 export interface DrawablePart {
   geometry: BufferGeometry;
   material: Material;
   matrix: Matrix4;
+  /** Triangles of the coarser levels of detail; null: the part is too small to be seen on that level. */
+  levels?: (BufferAttribute | null)[];
+  /** Of a part whose vertices have colours: the colours. */
+  colors?: readonly Color[];
 }
 
 /** What an entity looks like, in its own frame. Shared by all entities that look the same. */
@@ -13,6 +18,10 @@ export interface Drawable {
   parts: DrawablePart[];
   bounds: Box3;
   castsShadow: boolean;
+  /** How far each coarser level's surface may be from the full one, m; none: there is full detail alone. */
+  levelErrors?: readonly number[];
+  /** Its vertices move, so that its box at rest does not tell where it is. */
+  bends?: boolean;
   /** Faces are drawn from both sides. */
   hasTwoSides?: boolean;
   /** It is cloth: its folds have faces seen edge-on everywhere. */
@@ -45,6 +54,14 @@ export function isClosed(geometry: BufferGeometry): boolean {
   return [...open.values()].every((ways) => ways === 0);
 }
 
+/** The triangles of the coarsest level whose surface is nearer than `error`, m, to the full one; null: all vertices in turn. */
+export function coarseIndexOf(drawable: Drawable, part: DrawablePart, error: number): BufferAttribute | null {
+  const { levelErrors = [] } = drawable;
+  let level = levelErrors.length;
+  while (level > 0 && levelErrors[level - 1]! > error) --level;
+  return (level > 0 ? part.levels?.[level - 1] : null) ?? part.geometry.index;
+}
+
 export function drawable(parts: DrawablePart[], castsShadow = true): Drawable {
   const bounds = new Box3();
   const partBounds = new Box3();
@@ -70,9 +87,9 @@ export function disposeDrawable(drawable: Drawable): void {
 /** The mean of the parts' colours, with textures: for an entity that is drawn as points. */
 export function averageColor(drawable: Drawable): Color {
   const sum = new Color(0, 0, 0);
-  for (const { material } of drawable.parts) {
-    const { color, map } = material as MeshStandardMaterial;
-    const own = color?.clone() ?? new Color(1, 1, 1);
+  for (const part of drawable.parts) {
+    const { map } = part.material as MeshStandardMaterial;
+    const own = colorOfPart(part);
     if (map?.image) own.multiply(averageOf(map.image as CanvasImageSource));
     sum.add(own);
   }

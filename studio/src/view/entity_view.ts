@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { Box3, Color, Group, Matrix4, Quaternion, Vector3 } from "three";
+import { Box3, Color, Group, type Intersection, Matrix4, Quaternion, Raycaster, Vector3 } from "three";
 import { type Motion } from "../document/motion";
 import { type Changed, positionOf, rotationOf, type SceneDocument } from "../document/scene_document";
 import type { Entity } from "../connection/scene_types";
@@ -7,6 +7,7 @@ import { Signal } from "../signal";
 import type { Connection } from "../connection/connection";
 import type { Frame } from "../connection/frame";
 import { Batch } from "./batch";
+import type { Viewer } from "./detail";
 import { averageColor, disposeDrawable, disposeGeometries, type Drawable } from "./drawable";
 import type { ModelStore } from "./model_store";
 import { opticsOf } from "./liquid_look";
@@ -23,6 +24,10 @@ const SAND = new Color(0.68, 0.5, 0.29);
 const DROPS = new Color(0.28, 0.5, 0.72);
 /** Nearer things than this, m, are not more urgent to load. */
 const NEAREST = 0.5;
+/** The surface below a thing is looked for from so far over its base, and may be so far off, m. */
+const ABOVE = 0.03;
+const ROUGH = 0.005;
+const DOWN = new Vector3(0, -1, 0);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -54,6 +59,8 @@ export class EntityView {
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
   /** An entity was moved, added or removed since the shadows were drawn. */
   shadowsAreOld = true;
+  /** Entities that were moved, added or removed since their contact shadows were drawn. */
+  readonly shifted = new Set<number>();
   /** Points of entities that are not one body: grains, and nodes that carry a drawn form. */
   readonly clouds: PointClouds;
   readonly softs: SoftBodies;
@@ -69,6 +76,8 @@ export class EntityView {
   private readonly position = new Vector3();
   private readonly rotation = new Quaternion();
   private readonly scale = new Vector3();
+  private readonly downwards = new Raycaster();
+  private readonly hits: Intersection[] = [];
   private readonly matrix = new Matrix4();
 
   constructor(
@@ -165,6 +174,27 @@ export class EntityView {
     for (const index of restated) this.tint(index);
     this.motion.moved.clear();
     this.motion.restated.clear();
+  }
+
+  /** Decides what of all this is in view of the next picture, and in which detail. */
+  arrange(viewer: Viewer): void {
+    for (const batch of this.batches.values()) batch.arrange(viewer);
+  }
+
+  /** The level of detail that an entity was last drawn in (0 is full), -1 where it was too small. */
+  levelOf(index: number): number | undefined {
+    return this.batchOf.get(index)?.batch.levelOf(index);
+  }
+
+  /** The surface below a point, within `reach` m and without one entity: its height, m, and whose it is; null: there is none. */
+  below(point: Vector3, reach: number, ignore: number): { height: number; index: number } | null {
+    this.downwards.set(this.position.copy(point).setY(point.y + ABOVE), DOWN);
+    this.downwards.far = reach + ABOVE;
+    this.hits.length = 0;
+    for (const batch of this.batches.values()) batch.cast(this.downwards, this.hits, ROUGH, ignore);
+    const [first] = this.hits.sort((a, b) => a.distance - b.distance);
+    const index = first && (first.object.userData["batch"] as Batch).entityAt(first.instanceId!);
+    return first && index !== undefined ? { height: first.point.y, index } : null;
   }
 
   /** The entity's frame as it is drawn now; false when it is not drawn. */
@@ -317,6 +347,7 @@ export class EntityView {
     const shown = this.batchOf.get(index);
     if (!shown) return;
     this.batchOf.delete(index);
+    this.shifted.add(index);
     this.shadowsAreOld = true;
     shown.batch.remove(index);
     if (!shown.batch.empty) return;
@@ -370,6 +401,7 @@ export class EntityView {
     // An entity that is drawn as points is not drawn as the mesh that they filled.
     if (this.clouds.of(index)) this.matrix.makeScale(0, 0, 0);
     if (isDrawn) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);
+    this.shifted.add(index);
   }
 
   private tint(index: number): void {

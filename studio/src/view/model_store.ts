@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-import { Matrix4, Mesh } from "three";
+import { type BufferAttribute, type BufferGeometry, Matrix4, Mesh } from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
-import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+import { type GLTF, GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import type { Connection } from "../connection/connection";
 import type { ModelSummary } from "../connection/messages";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 import { LoadQueue } from "./load_queue";
+import { mergeParts } from "./merge_parts";
 
 /** So many models are asked about, and loaded, at once: enough to keep network and decoder busy, few enough to stay in order. */
 const MOST_ASKED = 16;
@@ -51,14 +52,29 @@ export class ModelStore {
   private async load(address: string): Promise<Drawable> {
     const gltf = await this.loader.loadAsync(address);
     gltf.scene.updateMatrixWorld(true);
-    const parts: DrawablePart[] = [];
-    gltf.scene.traverse((object) => {
-      if (!(object instanceof Mesh)) return;
-      const material = Array.isArray(object.material) ? object.material[0] : object.material;
-      parts.push({ geometry: object.geometry, material, matrix: new Matrix4().copy(object.matrixWorld) });
-    });
-    return drawable(parts);
+    const meshes: Mesh<BufferGeometry>[] = [];
+    gltf.scene.traverse((object) => object instanceof Mesh && meshes.push(object));
+    const parts: DrawablePart[] = await Promise.all(
+      meshes.map(async ({ geometry, material, matrixWorld }) => {
+        const levels = await this.levelsOf(gltf, geometry);
+        return { geometry, material: [material].flat()[0]!, matrix: new Matrix4().copy(matrixWorld), ...(levels && { levels }) };
+      }),
+    );
+    const told = meshes.map(({ geometry }) => toldLevels(geometry));
+    const loaded = drawable(mergeParts(parts));
+    if (told.every((levels) => levels !== undefined)) loaded.levelErrors = told[0]!.map((_, level) => Math.max(...told.map((levels) => levels[level]!.error)));
+    return loaded;
   }
+
+  private async levelsOf(gltf: GLTF, geometry: BufferGeometry): Promise<(BufferAttribute | null)[] | undefined> {
+    const told = toldLevels(geometry);
+    return told && Promise.all(told.map(({ indices }) => (indices === undefined ? null : (gltf.parser.getDependency("accessor", indices) as Promise<BufferAttribute>))));
+  }
+}
+
+/** What the server says of a part's coarser levels (src/interchange/compact/detail_levels.h); undefined: there are none. */
+function toldLevels(geometry: BufferGeometry): { indices?: number; error: number }[] | undefined {
+  return (geometry.userData as { embody?: { levels?: { indices?: number; error: number }[] } }).embody?.levels;
 }
 
 /** The promise that is kept under the key; a failed one is removed, so that the next call tries again. */

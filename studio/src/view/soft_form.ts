@@ -417,7 +417,7 @@ export class SoftSkin {
       matrix: NONE,
     }));
     this.parts = parts.map(({ geometry }) => new CarriedPart(geometry, form, finder));
-    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
+    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
   }
 
   /** Measures the drawn form; for tests. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { type Material, MeshLambertMaterial, type MeshStandardMaterial } from "three";
+import { type Material, MeshLambertMaterial, type MeshStandardMaterial, type WebGLProgramParametersWithUniforms } from "three";
 import { BodyState } from "../document/motion";
 
 /** How strongly states are shown: not, as a faint tint of the own colour, or by the state's colour alone. */
@@ -40,17 +40,31 @@ outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(t
  */
 export function tintable(original: Material, quality: Quality, hasRim: boolean): Material {
   const material = quality === "low" ? lambert(original as MeshStandardMaterial) : original.clone();
+  const hasSurface = quality === "high" && original.userData["surfaceAtVertices"] === true;
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nvarying vec4 vTint;")
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;");
+    if (hasSurface) addSurface(shader);
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
       .replace("#include <alphatest_fragment>", MIX)
       .replace("#include <opaque_fragment>", hasRim ? RIM : "#include <opaque_fragment>");
   };
-  material.customProgramCacheKey = () => (hasRim ? "tint and rim" : "tint");
+  const key = `tint${hasRim ? " and rim" : ""}${hasSurface ? " and surface" : ""}`;
+  material.customProgramCacheKey = () => key;
   return material;
+}
+
+/** Roughness and metalness, of 8 bits each in one number, from the vertices (merge_parts.ts). */
+function addSurface(shader: WebGLProgramParametersWithUniforms): void {
+  shader.vertexShader = shader.vertexShader
+    .replace("#include <common>", "#include <common>\nattribute float surface;\nvarying vec2 vSurface;")
+    .replace("#include <begin_vertex>", "#include <begin_vertex>\nfloat packed = floor(surface * 65535.0 + 0.5);\nvSurface = vec2(floor(packed / 256.0), mod(packed, 256.0)) / 255.0;");
+  shader.fragmentShader = shader.fragmentShader
+    .replace("#include <common>", "#include <common>\nvarying vec2 vSurface;")
+    .replace("#include <roughnessmap_fragment>", "float roughnessFactor = vSurface.x;")
+    .replace("#include <metalnessmap_fragment>", "float metalnessFactor = vSurface.y;");
 }
 
 function lambert(original: MeshStandardMaterial): MeshLambertMaterial {

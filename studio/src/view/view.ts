@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-import { type Color, type InstancedMesh, type Intersection, Matrix4, NeutralToneMapping, PCFShadowMap, type PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { type Color, type Intersection, NeutralToneMapping, PCFShadowMap, type PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { Motion } from "../document/motion";
 import { Signal } from "../signal";
 import type { Batch } from "./batch";
 import { CameraRig } from "./camera_rig";
 import { CollisionOverlay } from "./collision_overlay";
+import { ContactShadows } from "./contact_shadows";
+import { Viewer } from "./detail";
 import { DebugOverlay } from "./debug_overlay";
 import type { EntityView } from "./entity_view";
 import { Environment, type Theme } from "./environment";
@@ -38,6 +40,9 @@ const STILL_FINENESS = 2;
 const SLOW_PICTURES = 12;
 const SLOW_MS = 120;
 
+/** Levels of detail may be so far from the full surface, pixels: without a graphics card triangles cost most. */
+const TOLERANCE: Record<Quality, number> = { high: 1, low: 1.5 };
+
 /** The 3D view. A picture is drawn only when something changed. */
 export class View {
   readonly scene = new Scene();
@@ -49,6 +54,7 @@ export class View {
   readonly debug = new DebugOverlay();
   readonly pins: PinMarks;
   readonly people: PeopleView;
+  readonly contactShadows: ContactShadows;
   /** Sent just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
   /** Sent after a picture was drawn, while it can still be read. */
@@ -71,6 +77,8 @@ export class View {
   readonly hasSmoothEdges: boolean;
   private asked = false;
   private halted = false;
+  /** Contact shadows are not all made yet. */
+  private shadowsWait = false;
   private lastFrame = 0;
   /** The last picture asked for the next one: the time between them is work, not idle time. */
   private goesOn = false;
@@ -78,9 +86,10 @@ export class View {
   private slowPictures = 0;
   private pixelRatio = 1;
   private readonly size = new Vector2();
+  /** What is in view of pictures, and in which detail. */
+  readonly viewer = new Viewer();
   private readonly raycaster = new Raycaster();
   private readonly hits: Intersection[] = [];
-  private readonly instance = new Matrix4();
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -100,7 +109,8 @@ export class View {
     this.collision = new CollisionOverlay(entities);
     this.pins = new PinMarks(entities.softs);
     this.people = new PeopleView(people, entities);
-    this.scene.add(entities.group, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
+    this.contactShadows = new ContactShadows(entities);
+    this.scene.add(entities.group, this.contactShadows.mesh, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
     this.rig.changed.on(() => {
       entities.lookFrom(this.rig.camera.position);
       this.invalidate();
@@ -147,6 +157,8 @@ export class View {
     this.renderer.setPixelRatio(this.pixelRatio);
     this.environment.setQuality(quality);
     this.entities.setQuality(quality);
+    this.contactShadows.setQuality(quality);
+    this.viewer.tolerance = TOLERANCE[quality];
     this.resize();
   }
 
@@ -157,7 +169,7 @@ export class View {
 
   /** Saves the present picture as a PNG file in the browser's downloads. */
   savePicture(title: string): void {
-    this.renderer.render(this.scene, this.rig.camera);
+    this.render();
     this.canvas.toBlob((blob) => {
       if (!blob) return;
       const link = document.createElement("a");
@@ -229,7 +241,7 @@ export class View {
       const batch = hit.object.userData["batch"] as Pick<Batch, "entityAt"> | undefined;
       const index = batch?.entityAt(hit.instanceId ?? -1);
       if (index === undefined || ignore?.has(index)) continue;
-      return { index, point: hit.point, normal: this.worldNormal(hit), distance: hit.distance };
+      return { index, point: hit.point, normal: hit.normal?.clone() ?? new Vector3(0, 1, 0), distance: hit.distance };
     }
     return null;
   }
@@ -244,11 +256,11 @@ export class View {
     const flying = this.rig.advance(now, seconds);
     const moving = this.advance(now);
     const peopleMove = this.people.advance(now, this.headset?.camera ?? this.rig.camera, this.size, this.canvas.clientHeight);
-    this.renderer.render(this.scene, this.headset?.camera ?? this.rig.camera);
+    this.render();
     ++this.frames;
     this.afterFrame.emit();
     this.goesOn = flying || moving || peopleMove;
-    if (flying || peopleMove) this.invalidate();
+    if (flying || peopleMove || this.shadowsWait) this.invalidate();
     else if (moving) this.drawSoon();
     else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
   }
@@ -259,6 +271,7 @@ export class View {
     const moving = this.entities.advance(now) || bodiesMove;
     this.beforeFrame.emit(now);
     this.entities.update(now);
+    this.shadowsWait = this.contactShadows.update(now);
     this.collision.update(now);
     this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
@@ -273,7 +286,18 @@ export class View {
   private drawStill(): void {
     if (this.halted || this.hasSmoothEdges || this.renderer.xr.isPresenting) return;
     this.setFine(true);
-    this.renderer.render(this.scene, this.rig.camera);
+    this.render();
+  }
+
+  /** Draws what advance() has brought up to date, at the present size. */
+  render(): void {
+    const camera = this.headset?.camera ?? this.rig.camera;
+    // The headset's camera encloses the views of both eyes.
+    if (this.headset) this.renderer.xr.updateCamera(this.headset.camera);
+    this.viewer.hasShadows = this.renderer.shadowMap.enabled;
+    this.viewer.look(camera, this.renderer.getDrawingBufferSize(this.size).y);
+    this.entities.arrange(this.viewer);
+    this.renderer.render(this.scene, camera);
   }
 
   private setFine(isFine: boolean): void {
@@ -306,12 +330,5 @@ export class View {
     const y = 1 - (2 * (clientY - frame.top)) / frame.height;
     this.rig.camera.updateMatrixWorld();
     this.raycaster.setFromCamera(new Vector2(x, y), this.rig.camera);
-  }
-
-  private worldNormal(hit: Intersection): Vector3 {
-    const mesh = hit.object as InstancedMesh;
-    if (!mesh.isInstancedMesh) return hit.normal?.clone() ?? new Vector3(0, 1, 0);
-    mesh.getMatrixAt(hit.instanceId ?? 0, this.instance);
-    return (hit.face?.normal.clone() ?? new Vector3(0, 1, 0)).transformDirection(this.instance);
   }
 }

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// How the scene looks: levels of detail beside full detail, what is picked then, contact shadows.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { difference, pictureOfScene } from "./browser.mjs";
+import { Session } from "./session.mjs";
+
+const session = new Session();
+const floor = { index: 1, name: "Floor", shape: { type: "plane" } };
+
+before(() => session.start({ embody_scene: 1, title: "Look", entities: [floor] }));
+after(() => session.end());
+
+/** Keys of real models, the heaviest of some hundred first. */
+async function heavyModels(count) {
+  const { models } = await session.command("catalog.search", { words: "", limit: 200 });
+  return models.filter(({ size }) => Math.max(...size) < 3).sort((a, b) => b.triangles - a.triangles).slice(0, count).map(({ key }) => key);
+}
+
+async function open(entities, camera, options) {
+  await session.command("scene.load", { scene: { embody_scene: 1, title: "Look", camera, entities: [floor, ...entities] } });
+  const page = await session.reopen(options);
+  await page.waitForFunction((count) => window.embody.entities().filter(({ drawn }) => drawn).length === count, entities.length + 1);
+  return page;
+}
+
+test("levels of detail look like full detail, and rays meet full detail", async () => {
+  await session.reopen();
+  const keys = await heavyModels(12);
+  const entities = keys.map((model, at) => ({ index: at + 2, model, pose: { position: [2 * (at % 4) - 3, 0, -2 * Math.floor(at / 4)] } }));
+  const page = await open(entities, { position: [0, 2.4, 9], target: [0, 0.5, -2] });
+  const levels = () => page.evaluate((count) => Array.from({ length: count }, (_, at) => window.embody.levelOf(at + 2)), entities.length);
+  const coarse = await pictureOfScene(page);
+  const coarseTriangles = await page.evaluate(() => window.embody.drawn().triangles);
+  assert.ok((await levels()).every((level) => level > 0), "all are drawn on coarser levels from here");
+  const middles = await page.evaluate((count) => Array.from({ length: count }, (_, at) => window.embody.seenAt(at + 2)), entities.length);
+  const pickAll = () => page.evaluate((places) => places.map(({ x, y }) => window.embody.pick(x, y)), middles);
+  const picked = await pickAll();
+
+  await page.evaluate(() => window.embody.showFullDetail(true));
+  const full = await pictureOfScene(page);
+  const fullTriangles = await page.evaluate(() => window.embody.drawn().triangles);
+  assert.ok((await levels()).every((level) => level === 0));
+  assert.ok(coarseTriangles < fullTriangles / 3, `${coarseTriangles} of ${fullTriangles} triangles`);
+  const different = await difference(page, coarse, full);
+  assert.ok(different < 0.01, `${different} of the picture differs`);
+  assert.deepEqual(picked, await pickAll());
+  assert.deepEqual(page.faults, []);
+});
+
+test("what is out of view is not drawn, and can be met by a ray", async () => {
+  const box = (index, x) => ({ index, shape: { type: "box", half_extents: [0.5, 0.5, 0.5] }, pose: { position: [x, 0.5, 0] } });
+  const page = await open([box(2, 0), box(3, 40)], { position: [0, 2, 6], target: [0, 0.5, 0] });
+  assert.deepEqual(await page.evaluate(() => [2, 3].map((index) => window.embody.levelOf(index))), [0, -1]);
+  await session.command("entity.transform", { poses: [{ index: 3, position: [1.2, 0.5, 0] }] });
+  await page.waitForFunction(() => window.embody.levelOf(3) === 0);
+});
+
+test("contact shadows lie on what is below, follow, fade with height and go", async () => {
+  const box = (index, half, position) => ({ index, shape: { type: "box", half_extents: half }, pose: { position } });
+  const table = box(2, [0.6, 0.4, 0.4], [0, 0.4, 0]);
+  const cup = box(3, [0.05, 0.05, 0.05], [0, 0.85, 0]);
+  const stool = box(4, [0.2, 0.2, 0.2], [1.5, 0.2, 0]);
+  const page = await open([table, cup, stool], { position: [0, 2, 5], target: [0, 0.5, 0] });
+  const shadow = (index) => page.evaluate((index) => window.embody.contactShadow(index), index);
+  await page.waitForFunction(() => [2, 3, 4].every((index) => window.embody.contactShadow(index)?.darkness > 0.9));
+  assert.ok(Math.abs((await shadow(3)).height - 0.8) < 1e-3, "the cup's lies on the table");
+  assert.ok(Math.abs((await shadow(4)).height) < 1e-3, "the stool's lies on the floor");
+
+  await session.command("entity.transform", { poses: [{ index: 4, position: [1.5, 0.5, 0] }] });
+  await page.waitForFunction(() => window.embody.contactShadow(4)?.darkness < 0.5);
+  assert.ok((await shadow(4)).darkness > 0.1);
+  // The table goes from under the cup: nothing is left to be dark below it.
+  await session.command("entity.transform", { poses: [{ index: 2, position: [-3, 0.4, 0] }] });
+  await page.waitForFunction(() => window.embody.contactShadow(3) === null);
+  await session.command("entity.remove", { indices: [2] });
+  await page.waitForFunction(() => window.embody.contactShadow(2) === null);
+  assert.deepEqual(page.faults, []);
+});
