@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { type BufferGeometry, type Color, DoubleSide, type Group, type Intersection, type Material, Matrix4, Mesh, Object3D, type Raycaster, Sphere, Vector3 } from "three";
 import { NOTHING, type Viewer } from "./detail";
-import { coarseIndexOf, type Drawable } from "./drawable";
+import { coarseIndexOf, type Drawable, type DrawablePart } from "./drawable";
 import { type Instances, LevelMeshes, sharing } from "./level_meshes";
 import { type Quality, tintable } from "./tint";
 
@@ -19,6 +19,7 @@ const found: Intersection[] = [];
 export class Batch {
   private readonly levels: (LevelMeshes | null)[];
   private readonly materials: Material[];
+  private readonly farMaterials: Material[];
   private readonly slots: number[] = [];
   private readonly slotOf = new Map<number, number>();
   private instances: Instances = { matrices: new Float32Array(0), colors: new Float32Array(0), tints: new Float32Array(0) };
@@ -44,11 +45,13 @@ export class Batch {
     quality: Quality,
   ) {
     this.levels = new Array<null>(1 + this.errors.length).fill(null);
-    this.materials = drawable.parts.map((part) => {
+    const dressed = (part: DrawablePart) => {
       const material = tintable(part.material, quality, !drawable.isCloth);
       if (drawable.hasTwoSides) material.side = DoubleSide;
       return material;
-    });
+    };
+    this.materials = drawable.parts.map(dressed);
+    this.farMaterials = drawable.far?.parts.map(dressed) ?? [];
     drawable.bounds.getCenter(this.ownCenter);
     this.ownRadius = drawable.bends || !drawable.castsShadow ? Infinity : drawable.bounds.getSize(center).length() / 2;
     this.target = new Target(this);
@@ -186,7 +189,7 @@ export class Batch {
 
   dispose(): void {
     for (const level of this.levels) level?.dispose(true);
-    for (const material of this.materials) material.dispose();
+    for (const material of [...this.materials, ...this.farMaterials]) material.dispose();
     this.group.remove(this.target);
   }
 
@@ -208,9 +211,15 @@ export class Batch {
         for (let slot = 0; slot < this.slots.length; ++slot) if (this.drawnLevel[slot] === level && this.isInView[slot] === seen) order[all++] = slot;
         if (seen) inView = all;
       }
-      if (all > 0) this.levels[level] ??= new LevelMeshes(this.drawable, level, this.materials, this.capacity, this.group);
+      if (all > 0) this.levels[level] ??= this.meshesOf(level);
       this.levels[level]?.fill(this.instances, order, inView, all);
     }
+  }
+
+  private meshesOf(level: number): LevelMeshes {
+    const { drawable } = this;
+    const isFar = drawable.far !== undefined && level >= drawable.far.from;
+    return new LevelMeshes(drawable, isFar ? drawable.far!.parts : drawable.parts, level, isFar ? this.farMaterials : this.materials, this.capacity, this.group);
   }
 
   private grow(capacity: number): void {

@@ -3,8 +3,8 @@ import { Frustum, Matrix4, type PerspectiveCamera, Sphere, Vector3 } from "three
 
 /** A coarser level is taken up only where it is well within that, so that levels do not flicker to and fro. */
 const CALM = 0.85;
-/** What is smaller than this is not drawn, pixels. */
-const LEAST_SIZE = 1;
+/** What is smaller than this many times the tolerance is not drawn. */
+const LEAST_SIZE = 1.3;
 /** The level of what is too small to be drawn. */
 export const NOTHING = -1;
 
@@ -53,7 +53,7 @@ export class Viewer {
     const y = balls[at + 1]! - this.eye.y;
     const z = balls[at + 2]! - this.eye.z;
     const density = this.pixels / Math.max(Math.sqrt(x * x + y * y + z * z) - radius, this.near);
-    if (2 * radius * density < LEAST_SIZE * (before === NOTHING ? 1 / CALM : 1)) return NOTHING;
+    if (2 * radius * density < LEAST_SIZE * this.tolerance * (before === NOTHING ? 1 / CALM : 1)) return NOTHING;
     const most = this.tolerance / (balls[at + 4]! * density);
     let level = 0;
     while (level < errors.length && errors[level]! <= (level < before || before === NOTHING ? most : CALM * most)) ++level;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 import { Box3, type BufferAttribute, type BufferGeometry, Color, type Material, Matrix4, type MeshStandardMaterial, SRGBColorSpace } from "three";
-import { colorOfPart } from "./merge_parts";
 
 /** One mesh of a drawable; `matrix` places it in the entity's frame. */
 export interface DrawablePart {
@@ -20,6 +19,8 @@ export interface Drawable {
   castsShadow: boolean;
   /** How far each coarser level's surface may be from the full one, m; none: there is full detail alone. */
   levelErrors?: readonly number[];
+  /** From this level on (1 is the first coarser one) these parts are drawn: textures are one colour there. */
+  far?: { from: number; parts: DrawablePart[] };
   /** Its vertices move, so that its box at rest does not tell where it is. */
   bends?: boolean;
   /** Faces are drawn from both sides. */
@@ -84,6 +85,14 @@ export function disposeDrawable(drawable: Drawable): void {
   }
 }
 
+/** The colour of a part; of one whose vertices have colours, their mean. */
+function colorOfPart({ material, colors }: DrawablePart): Color {
+  if (!colors) return (material as MeshStandardMaterial).color?.clone() ?? new Color(1, 1, 1);
+  const sum = new Color(0, 0, 0);
+  for (const color of colors) sum.add(color);
+  return sum.multiplyScalar(1 / colors.length);
+}
+
 /** The mean of the parts' colours, with textures: for an entity that is drawn as points. */
 export function averageColor(drawable: Drawable): Color {
   const sum = new Color(0, 0, 0);
@@ -96,7 +105,8 @@ export function averageColor(drawable: Drawable): Color {
   return sum.multiplyScalar(1 / Math.max(1, drawable.parts.length));
 }
 
-function averageOf(image: CanvasImageSource): Color {
+/** The mean colour of a texture's image. */
+export function averageOf(image: CanvasImageSource): Color {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 1;
   const context = canvas.getContext("2d");

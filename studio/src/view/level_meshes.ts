@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, type Material, Matrix4, MeshBasicMaterial } from "three";
-import type { Drawable } from "./drawable";
+import type { Drawable, DrawablePart } from "./drawable";
 
 type Mesh = InstancedMesh<BufferGeometry, Material | Material[]>;
 
@@ -28,6 +28,7 @@ export class LevelMeshes {
 
   constructor(
     drawable: Drawable,
+    parts: readonly DrawablePart[],
     level: number,
     materials: readonly Material[],
     readonly capacity: number,
@@ -35,7 +36,7 @@ export class LevelMeshes {
   ) {
     this.colors = numbers(capacity, 3);
     this.tints = numbers(capacity, 4);
-    drawable.parts.forEach((part, at) => {
+    parts.forEach((part, at) => {
       const index = level === 0 || !part.levels ? part.geometry.index : part.levels[level - 1]!;
       if (level > 0 && index === null) return;
       // The instanced attributes are part of the geometry, so each mesh has its own geometry around the shared buffers.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-import { BufferAttribute, BufferGeometry, Color, InterleavedBuffer, InterleavedBufferAttribute, type Material, MeshStandardMaterial, type TypedArray } from "three";
-import type { DrawablePart } from "./drawable";
+import { BufferAttribute, BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, MeshStandardMaterial, type TypedArray } from "three";
+import { averageOf, type DrawablePart } from "./drawable";
 
 /** Vertex numbers above this need 32 bits. */
 const LAST_SHORT = 65535;
@@ -26,11 +26,11 @@ export function mergeParts(parts: readonly DrawablePart[]): DrawablePart[] {
   return result;
 }
 
-function isPlain({ geometry, material }: DrawablePart): boolean {
+function isPlain({ geometry, material }: DrawablePart, withTexture = false): boolean {
   if (!(material instanceof MeshStandardMaterial) || !geometry.index) return false;
   const { position, normal, color } = geometry.attributes;
   const isOurs = position?.array instanceof Uint16Array && normal?.array instanceof Int8Array && !color;
-  return isOurs && !material.map && !material.transparent && material.alphaTest === 0 && material.emissive.getHex() === 0;
+  return isOurs && (withTexture || !material.map) && !material.transparent && material.alphaTest === 0 && material.emissive.getHex() === 0;
 }
 
 function merged(parts: readonly DrawablePart[]): DrawablePart {
@@ -72,7 +72,6 @@ function merged(parts: readonly DrawablePart[]): DrawablePart {
   material.userData["surfaceAtVertices"] = true;
   const levels = parts[0]!.levels?.map((_, level) => joined(parts, parts.map((part) => part.levels?.[level] ?? null), vertices));
   const colors = parts.map((part) => (part.material as MeshStandardMaterial).color);
-  for (const part of parts) part.material.dispose();
   return { geometry, material, matrix: parts[0]!.matrix, colors, ...(levels && { levels }) };
 }
 
@@ -95,10 +94,39 @@ function joined(parts: readonly DrawablePart[], indices: readonly (BufferAttribu
   return new BufferAttribute(all, 1);
 }
 
-/** The colour of a part; of one whose vertices have colours, their mean. */
-export function colorOfPart({ material, colors }: { material: Material; colors?: readonly Color[] }): Color {
-  if (!colors) return (material as MeshStandardMaterial).color?.clone() ?? new Color(1, 1, 1);
-  const sum = new Color(0, 0, 0);
-  for (const color of colors) sum.add(color);
-  return sum.multiplyScalar(1 / colors.length);
+/** This many of the coarsest levels are so small on the screen that a texture is one colour. */
+const FAR_LEVELS = 2;
+
+/** The parts of what is seen from afar: textured ones have their mean colour, so that they merge with the others. Null where that saves nothing. */
+export function farParts(parts: readonly DrawablePart[], levels: number): { from: number; parts: DrawablePart[] } | null {
+  const from = levels - FAR_LEVELS + 1;
+  const isFlat = (part: DrawablePart) => part.levels !== undefined && isPlain(part, true);
+  if (from < 1 || parts.filter(isFlat).length < 2 || !parts.some((part) => isFlat(part) && !isPlain(part))) return null;
+  return { from, parts: mergeParts(parts.map((part) => (isFlat(part) ? flattened(part, from) : part))) };
+}
+
+/** A part's coarsest levels on a copy of the vertices that they have, in one colour. */
+function flattened({ geometry, material, matrix, levels }: DrawablePart, from: number): DrawablePart {
+  const { color, roughness, metalness, map, side } = material as MeshStandardMaterial;
+  const position = geometry.getAttribute("position");
+  const normal = geometry.getAttribute("normal");
+  const newOf = new Map<number, number>();
+  const few = levels!.map((index, level) => {
+    if (level + 1 < from || !index) return null;
+    return new BufferAttribute(Uint32Array.from(index.array, (vertex) => newOf.get(vertex) ?? (newOf.set(vertex, newOf.size), newOf.size - 1)), 1);
+  });
+  const positions = new Uint16Array(4 * newOf.size);
+  const normals = new Int8Array(4 * newOf.size);
+  for (const [old, vertex] of newOf)
+    for (let k = 0; k < 3; ++k) {
+      positions[4 * vertex + k] = position.getComponent(old, k);
+      normals[4 * vertex + k] = Math.round(127 * normal.getComponent(old, k));
+    }
+  const copy = new BufferGeometry();
+  copy.setAttribute("position", fieldOf(positions, 3, 0, false));
+  copy.setAttribute("normal", fieldOf(normals, 3, 0, true));
+  copy.setIndex(few[from - 1] ?? new BufferAttribute(new Uint32Array(0), 1));
+  const mean = color.clone();
+  if (map?.image) mean.multiply(averageOf(map.image as CanvasImageSource));
+  return { geometry: copy, material: new MeshStandardMaterial({ color: mean, roughness, metalness, side }), matrix, levels: few };
 }

@@ -6,7 +6,7 @@ import type { Connection } from "../connection/connection";
 import type { ModelSummary } from "../connection/messages";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 import { LoadQueue } from "./load_queue";
-import { mergeParts } from "./merge_parts";
+import { farParts, mergeParts } from "./merge_parts";
 
 /** So many models are asked about, and loaded, at once: enough to keep network and decoder busy, few enough to stay in order. */
 const MOST_ASKED = 16;
@@ -63,6 +63,8 @@ export class ModelStore {
     const told = meshes.map(({ geometry }) => toldLevels(geometry));
     const loaded = drawable(mergeParts(parts));
     if (told.every((levels) => levels !== undefined)) loaded.levelErrors = told[0]!.map((_, level) => Math.max(...told.map((levels) => levels[level]!.error)));
+    const far = loaded.levelErrors && farParts(parts, loaded.levelErrors.length);
+    if (far) loaded.far = far;
     return loaded;
   }
 
