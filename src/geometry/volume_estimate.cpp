@@ -24,7 +24,7 @@ constexpr double far_away = 2.0;
 constexpr std::uint32_t triangles_per_cluster = 8;
 constexpr double weld_tolerance = 1e-6;  // of the mesh's size
 constexpr double exact_error = 1e-6;     // single precision positions
-constexpr double thinnest_solid = 1e-4;  // a volume below this fraction of (size · area) is a sheet
+constexpr double thinnest_enclosed = 1e-4;  // a volume below this fraction of (size · area) is a sheet
 
 // Solid angle of a triangle seen from the origin.
 double solid_angle(Vec3 a, Vec3 b, Vec3 c) {
@@ -267,7 +267,7 @@ VolumeEstimate estimate_volume(const TriangleMesh& mesh, int cells) {
     } else {
         estimate = correct_on_grid(parts, box, cells);
     }
-    if (!(estimate.solid.volume > thinnest_solid * size * surface_area(welded))) {
+    if (!(estimate.solid.volume > thinnest_enclosed * size * surface_area(welded))) {
         estimate = {};
         estimate.solid.center = box.center();
     }

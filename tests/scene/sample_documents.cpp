@@ -51,6 +51,14 @@ void add_shapes(Document& document) {
     compound.children.push_back({BoxShape{{0.2, 0.2, 0.2}}, {{0, 0, 0}, from_axis_angle({0, 1, 0}, 0.7)}});
     for_each_shape_of_lengths<ConvexShape>([&](const auto& shape) { compound.children.push_back({shape, {}}); });
     add(document, "Compound", compound, {7, 1, 0});
+    WallShape wall;
+    wall.length = 4;
+    wall.rise = 0.25;
+    wall.start_cut = {0.05, -0.05};
+    wall.end_cut = {0.1, 0.2};
+    wall.openings = {{1, 0.9, 2.1, 0, OpeningKind::door, 7}, {2.5, 0.8, 1, 0.9, OpeningKind::window}};
+    add(document, "Wall", wall, {0, 0, 12});
+    add(document, "Slab", SlabShape{{{0, 0}, {3, 0}, {3, 2}, {1, 1}}, 0.2}, {0, 0, 14});
     document.entities.push_back({});
     document.entities.back().index = document.next_index++;
     document.entities.back().geometry = ModelReference{"sweethome3d:chair"};

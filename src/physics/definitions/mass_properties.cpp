@@ -48,6 +48,9 @@ struct Solid {
         }
         return sum;
     }
+    Result<MassProperties> operator()(const HasParts auto& shape) const {
+        return (*this)(CompoundShape{shape.parts()});
+    }
 };
 
 }  // namespace

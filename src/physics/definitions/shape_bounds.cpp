@@ -48,6 +48,8 @@ struct Extent {
             std::visit(Extent{all, {child.local.position, normalized(child.local.rotation)}}, child.shape);
     }
 
+    void operator()(const HasParts auto& shape) const { (*this)(CompoundShape{shape.parts()}); }
+
 private:
     void add_ball(Vec3 center, double radius) const {
         const Vec3 at = transform_point(pose, center), reach{radius, radius, radius};

@@ -115,6 +115,55 @@ Result<void> check(const MeshShape& s) {
     return {};
 }
 
+Result<void> check(const WallOpening& opening, const std::string& field) {
+    const auto check_length = [&field](const char* name, double value) -> Result<void> {
+        auto checked = check_size(name, value);
+        return checked ? checked : Result<void>(Error{field + "." + name, checked.error().why});
+    };
+    if (!(std::fabs(opening.offset) <= largest_size))
+        return Error{field + ".offset", "must be a finite length, got " + to_text(opening.offset)};
+    if (auto r = check_length("width", opening.width); !r) return r;
+    if (auto r = check_length("height", opening.height); !r) return r;
+    if (opening.sill >= 0 && opening.sill <= largest_size) return {};
+    return Error{field + ".sill", "must be a height from 0 to 1e6 m, got " + to_text(opening.sill)};
+}
+
+Result<void> check(const WallShape& s) {
+    if (auto r = check_size("length", s.length); !r) return r;
+    if (auto r = check_size("height", s.height); !r) return r;
+    if (auto r = check_size("thickness", s.thickness); !r) return r;
+    if (!(s.height + s.rise >= smallest_size && s.height + s.rise <= largest_size))
+        return Error{"rise", "must leave a height at the wall's end, got " + to_text(s.rise)};
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (!(std::fabs(s.start_cut[i]) <= largest_size))
+            return Error{element("start_cut", i), "must be a finite length, got " + to_text(s.start_cut[i])};
+        if (!(std::fabs(s.end_cut[i]) <= largest_size))
+            return Error{element("end_cut", i), "must be a finite length, got " + to_text(s.end_cut[i])};
+    }
+    const auto [first, last] = s.straight_part();
+    if (!(last - first >= smallest_size)) return Error{"end_cut", "leaves nothing of the wall between its mitred ends"};
+    if (s.openings.size() > max_openings)
+        return Error{"openings", "must be at most 256, got " + std::to_string(s.openings.size())};
+    for (std::size_t i = 0; i < s.openings.size(); ++i)
+        if (auto r = check(s.openings[i], element("openings", i)); !r) return r;
+    if (s.parts().empty()) return Error{"openings", "leave nothing of the wall"};
+    return {};
+}
+
+Result<void> check(const SlabShape& s) {
+    if (s.points.size() < 3 || s.points.size() > max_slab_points)
+        return Error{"points", "must be 3 to 500 corners, got " + std::to_string(s.points.size())};
+    for (std::size_t i = 0; i < s.points.size(); ++i)
+        if (auto r = check_point(element("points", i), {s.points[i][0], 0, s.points[i][1]}); !r) return r;
+    if (auto r = check_size("thickness", s.thickness); !r) return r;
+    if (const auto crossing = geometry::crossing_sides(s.points))
+        return Error{"points", "must go around once: the sides from corner " + std::to_string(crossing->first) +
+                                   " and from corner " + std::to_string(crossing->second) + " meet"};
+    const double area = std::fabs(geometry::signed_area(s.points));
+    if (!(area >= smallest_size) || s.parts().empty()) return Error{"points", "enclose no area"};
+    return {};
+}
+
 Result<void> check(const CompoundShape& s) {
     if (s.children.empty()) return Error{"children", "needs at least one child"};
     for (std::size_t i = 0; i < s.children.size(); ++i) {

@@ -8,6 +8,7 @@
 
 #include "foundation/result.h"
 #include "math/transform.h"
+#include "physics/definitions/building_shapes.h"
 #include "physics/definitions/shape_traits.h"
 
 namespace embody::physics {
@@ -111,7 +112,7 @@ struct CompoundShape {
 using ConvexShape = std::variant<SphereShape, BoxShape, CapsuleShape, CylinderShape, ConeShape, HullShape>;
 
 using ShapeDefinition = std::variant<SphereShape, BoxShape, CapsuleShape, CylinderShape, ConeShape, HullShape,
-                                     PlaneShape, HeightfieldShape, MeshShape, CompoundShape>;
+                                     PlaneShape, HeightfieldShape, MeshShape, CompoundShape, WallShape, SlabShape>;
 
 struct CompoundChild {
     ConvexShape shape;

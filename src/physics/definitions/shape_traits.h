@@ -4,6 +4,7 @@
 #include <concepts>
 #include <vector>
 
+#include "math/transform.h"
 #include "math/vec3.h"
 
 namespace embody::physics {
@@ -27,6 +28,12 @@ concept HasLengths = requires(Shape& shape) {
 template <class Shape>
 concept HasCorners = requires(const Shape& shape) {
     { shape.corners() } -> std::convertible_to<std::vector<Vec3>>;
+};
+
+/// A shape that collides, weighs and is filled as the convex parts that it consists of.
+template <class Shape>
+concept HasParts = requires(const Shape& shape) {
+    { shape.parts().front().local } -> std::convertible_to<Transform>;
 };
 
 }  // namespace embody::physics

@@ -27,6 +27,22 @@ inline constexpr auto fields_of<Camera> = std::tuple{
     always_saved("target", &Camera::target, "what it looks at", {.unit = "m"}),
 };
 
+/// A storey of a building. What stands below its top and not below its floor is on it.
+struct Level {
+    std::string name;
+    double elevation = 0;  ///< of its floor, m
+    double height = 2.5;   ///< from its floor to its ceiling, m
+    friend bool operator==(const Level&, const Level&) = default;
+};
+
+template <>
+inline constexpr auto fields_of<Level> = std::tuple{
+    always_saved("name", &Level::name, "what people call it"),
+    always_saved("elevation", &Level::elevation, "of its floor", {-1e4, 1e4, "m"}),
+    always_saved("height", &Level::height, "from its floor to its ceiling", {0.1, 1e4, "m"}),
+};
+static_assert(lists_all_members<Level>(), "a member of Level is in no list, or one is there twice");
+
 /// The physics settings of a scene. validate() has the same ranges and decides.
 template <>
 inline constexpr auto fields_of<physics::WorldSettings> = std::tuple{
@@ -59,6 +75,7 @@ struct Heading {
     std::string description;
     physics::WorldSettings settings{.workers = 0};
     std::optional<Camera> camera;
+    std::vector<Level> levels;
 };
 
 template <>
@@ -67,6 +84,7 @@ inline constexpr auto fields_of<Heading> = std::tuple{
     saved_when_set("description", &Heading::description, "what it shows"),
     always_saved("settings", &Heading::settings, "the world"),
     saved_when_set("camera", &Heading::camera, "to open the scene with; without, the Studio's own"),
+    saved_when_set("levels", &Heading::levels, "storeys of a building, for the plan; no physics"),
 };
 static_assert(lists_all_members<Heading>(), "a member of Heading is in no list, or one is there twice");
 

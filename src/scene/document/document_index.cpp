@@ -20,6 +20,11 @@ void add(DocumentIndex& index, const Entity& entity) {
     index.holds.add_pins(entity.index, entity.pins);
 }
 
+bool is_wall(const Entity& entity) {
+    const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry);
+    return shape && std::holds_alternative<physics::WallShape>(*shape);
+}
+
 }  // namespace
 
 void NamesInUse::remove(const std::string& name) {
@@ -52,7 +57,11 @@ std::string NamesInUse::free_name(const std::string& wanted) {
 void DocumentIndex::assign(const Document& document) {
     names.clear();
     holds = {};
-    for (const Entity& entity : document.entities) add(*this, entity);
+    walls.clear();
+    for (const Entity& entity : document.entities) {
+        add(*this, entity);
+        if (is_wall(entity)) walls.insert(entity.index);
+    }
     for (const SceneJoint& joint : document.joints) holds.add_joint(joint);
 }
 
@@ -61,6 +70,9 @@ void DocumentIndex::apply(const std::vector<Change>& changes) {
         if (const auto* entity = std::get_if<EntityChange>(&change)) {
             if (entity->before) remove(*this, *entity->before);
             if (entity->after) add(*this, *entity->after);
+            if (entity->same_geometry) continue;
+            if (entity->before) walls.erase(entity->before->index);
+            if (entity->after && is_wall(*entity->after)) walls.insert(entity->after->index);
         } else if (const auto* joint = std::get_if<JointChange>(&change)) {
             if (joint->before) holds.remove_joint(*joint->before);
             if (joint->after) holds.add_joint(*joint->after);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -27,7 +28,8 @@ private:
 /// Lookups that would otherwise search all of a document. Follows the document's changes.
 struct DocumentIndex {
     NamesInUse names;
-    HoldIndex holds;  ///< pins and joints of the document
+    HoldIndex holds;              ///< pins and joints of the document
+    std::set<EntityIndex> walls;  ///< entities of the shape wall
 
     void assign(const Document& document);
     void apply(const std::vector<Change>& changes);

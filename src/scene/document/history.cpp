@@ -58,7 +58,10 @@ bool can_merge(const Change& first, const Change& second) {
     if (first.index() != second.index()) return false;
     if (std::holds_alternative<PoseChange>(first)) return true;
     const auto* one = std::get_if<EntityChange>(&first);
-    return one && one->same_geometry && std::get<EntityChange>(second).same_geometry;
+    if (!one) return false;
+    const auto& other = std::get<EntityChange>(second);
+    if (one->same_geometry != other.same_geometry) return false;
+    return one->same_geometry || (one->before && one->after && other.before && other.after);
 }
 
 bool comes_or_goes(const Change& change) {

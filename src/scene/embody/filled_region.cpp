@@ -83,11 +83,16 @@ Result<FilledRegion> FilledRegion::of(const physics::ShapeDefinition& shape) {
         region.bounds_.add(made.value().bounds);
         region.parts_.push_back(std::move(made).value());
     };
+    const auto add_all = [&](const std::vector<CompoundChild>& children) {
+        for (const CompoundChild& child : children)
+            std::visit([&](const auto& own) { add(own, child.local); }, child.shape);
+    };
     const auto add_convex = [&](const auto& part) {
         using Own = std::decay_t<decltype(part)>;
         if constexpr (std::is_same_v<Own, CompoundShape>) {
-            for (const CompoundChild& child : part.children)
-                std::visit([&](const auto& own) { add(own, child.local); }, child.shape);
+            add_all(part.children);
+        } else if constexpr (physics::HasParts<Own>) {
+            add_all(part.parts());
         } else if constexpr (!std::is_same_v<Own, physics::PlaneShape> && !std::is_same_v<Own, physics::MeshShape> &&
                              !std::is_same_v<Own, physics::HeightfieldShape>) {
             add(part, Transform{});

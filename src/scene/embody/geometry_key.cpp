@@ -24,6 +24,7 @@ std::vector<double> numbers_of(const PlaneShape&) { return {}; }
 std::vector<double> numbers_of(const HeightfieldShape&) { return {}; }
 std::vector<double> numbers_of(const MeshShape&) { return {}; }
 std::vector<double> numbers_of(const CompoundShape&) { return {}; }
+std::vector<double> numbers_of(const HasParts auto&) { return {}; }
 
 }  // namespace
 

@@ -90,6 +90,8 @@ Result<void> add(const ShapeDefinition& shape, geometry::TriangleMesh& mesh) {
                     if (!added) return added;
                 }
                 return {};
+            } else if constexpr (physics::HasParts<Shape>) {
+                return add(physics::CompoundShape{one.parts()}, mesh);
             } else if constexpr (std::is_same_v<Shape, physics::PlaneShape> ||
                                  std::is_same_v<Shape, physics::HeightfieldShape>) {
                 return Error{"shape", std::string("a ") + physics::shape_name(shape) + " has no inside"};

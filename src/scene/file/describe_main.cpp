@@ -22,6 +22,8 @@ constexpr const char* name_of<physics::WorldSettings> = "SceneSettings";
 template <>
 constexpr const char* name_of<Camera> = "Camera";
 template <>
+constexpr const char* name_of<Level> = "Level";
+template <>
 constexpr const char* name_of<Heading> = "Heading";
 template <>
 constexpr const char* name_of<Pin> = "Pin";

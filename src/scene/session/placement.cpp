@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "attributes/physical_kind.h"
+#include "scene/session/building.h"
 #include "scene/session/placement_probe.h"
 #include "scene/session/placement_rules.h"
 
@@ -418,6 +419,7 @@ Result<Placement> place_on_ray(SessionState& state, const Entity& entity, const 
     if (!probe.ok()) return probe.error();
     const Placer placer(state, probe.value(), placement_rules(entity, acting.value()), options);
     const Surface surface = placer.find_surface(ray);
+    if (const auto in_wall = place_in_wall(state, entity, ray, distance(surface.position, ray.origin))) return *in_wall;
     if (!probe.value().has_bounds({{}, entity.pose.rotation}))
         return Placement{{surface.position, entity.pose.rotation}, surface.on};
     return placer.place(entity.pose, surface);

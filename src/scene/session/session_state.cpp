@@ -7,6 +7,7 @@
 #include "attributes/physical_kind.h"
 #include "scene/file/json/change_json.h"
 #include "scene/file/scene_file.h"
+#include "scene/session/building.h"
 #include "scene/session/catalog_edit.h"
 
 namespace embody::scene {
@@ -214,6 +215,7 @@ Result<void> SessionState::commit(Edit edit) {
     if (edit.changes.empty()) return {};
     for (const Change& change : edit.changes)
         if (Result<void> allowed = check_lock(change); !allowed.ok()) return allowed;
+    complete_building(*this, edit);
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
     json told = told_changes(edit.changes);
     record(std::move(edit));
@@ -378,7 +380,9 @@ Result<void> SessionState::check_lock(const Change& change) const {
     if (const auto* pose = std::get_if<PoseChange>(&change)) return check_unlocked(pose->index);
     const auto* entity = std::get_if<EntityChange>(&change);
     if (!entity || !entity->before) return {};
-    const bool stays = entity->after && entity->same_geometry && entity->before->pose == entity->after->pose &&
+    const bool is_same_shape =
+        entity->same_geometry || (entity->after && are_same_wall(entity->before->geometry, entity->after->geometry));
+    const bool stays = entity->after && is_same_shape && entity->before->pose == entity->after->pose &&
                        entity->before->scale == entity->after->scale &&
                        entity->before->enabled == entity->after->enabled;
     return stays ? Result<void>{} : check_unlocked(entity->before->index);

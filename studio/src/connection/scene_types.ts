@@ -32,7 +32,42 @@ export type Shape =
   | { type: "plane"; normal?: Vector; offset?: number }
   | { type: "heightfield"; columns: number; rows: number; cell_x?: number; cell_z?: number; heights: number[] }
   | { type: "mesh"; positions: Vector[]; triangles: Vector[] }
-  | { type: "compound"; children: (ConvexShape & Pose)[] };
+  | { type: "compound"; children: (ConvexShape & Pose)[] }
+  | WallShape
+  | SlabShape;
+
+export interface WallOpening {
+  kind: "hole" | "door" | "window";
+  /** of its nearer side from the wall's start, m */
+  offset: number;
+  width: number;
+  height: number;
+  /** of its lower side over the wall's foot, m */
+  sill?: number;
+  /** the door or window that stands in it */
+  entity?: number;
+}
+
+/** Along X from the origin, its foot at y = 0 and its middle at z = 0. */
+export interface WallShape {
+  type: "wall";
+  length: number;
+  height: number;
+  thickness: number;
+  /** so much higher is the wall at its end */
+  rise?: number;
+  /** how far its faces at -Z and +Z are cut back at an end */
+  start_cut?: [number, number];
+  end_cut?: [number, number];
+  openings?: WallOpening[];
+}
+
+/** A floor or ceiling with its top at y = 0; corners [x, z]. */
+export interface SlabShape {
+  type: "slab";
+  thickness: number;
+  points: [number, number][];
+}
 
 /** The entities that a trigger or an effect is about. */
 export type Target = "any" | { index: number } | { name: string } | { category: string };
@@ -79,6 +114,15 @@ export interface Camera {
   target: Vector;
 }
 
+export interface Level {
+  /** what people call it */
+  name?: string;
+  /** of its floor (-10000 … 10000 m) */
+  elevation?: number;
+  /** from its floor to its ceiling (0.1 … 10000 m) */
+  height?: number;
+}
+
 export interface SceneHeading {
   /** what the scene is called */
   title?: string;
@@ -88,6 +132,8 @@ export interface SceneHeading {
   settings?: Partial<SceneSettings>;
   /** to open the scene with; without, the Studio's own */
   camera?: Camera;
+  /** storeys of a building, for the plan; no physics */
+  levels?: Level[];
 }
 
 export interface Pin {

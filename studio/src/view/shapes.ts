@@ -11,7 +11,8 @@ import {
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { positionOf, rotationOf } from "../document/scene_document";
-import type { Shape } from "../connection/scene_types";
+import type { Shape, WallShape } from "../connection/scene_types";
+import { frameGeometry, paneGeometry, slabGeometry, wallGeometry } from "./building_shapes";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 import { drawingOf, isOfLengths } from "./shapes_of_lengths";
 
@@ -56,6 +57,10 @@ function shapeParts(shape: Shape): DrawablePart[] {
       return [part(heightfieldGeometry(shape))];
     case "mesh":
       return [part(meshGeometry(shape))];
+    case "wall":
+      return wallParts(shape);
+    case "slab":
+      return [part(slabGeometry(shape))];
     case "compound":
       return shape.children.flatMap((child) => {
         const local = new Matrix4().compose(
@@ -66,6 +71,15 @@ function shapeParts(shape: Shape): DrawablePart[] {
         return shapeParts(child).map((each) => ({ ...each, matrix: local.clone().multiply(each.matrix) }));
       });
   }
+}
+
+function wallParts(shape: WallShape): DrawablePart[] {
+  const parts = [part(wallGeometry(shape))];
+  const frames = frameGeometry(shape);
+  if (frames) parts.push({ ...part(frames), material: new MeshStandardMaterial({ color: 0xffffff, roughness: 0.45 }) });
+  const panes = paneGeometry(shape);
+  if (panes) parts.push({ ...part(panes), material: new MeshStandardMaterial({ color: 0xbfd8e6, roughness: 0.05, transparent: true, opacity: 0.28 }) });
+  return parts;
 }
 
 function planePart(normal: readonly number[], offset: number): DrawablePart {

@@ -55,6 +55,13 @@ public:
         change(pin.radius);
         value.push_back(pin);
     }
+    void change(std::vector<Level>& value) {
+        Level level;
+        change(level.name);
+        change(level.elevation);
+        change(level.height);
+        value.push_back(level);
+    }
     void change(std::map<std::string, attributes::AttributeValue>& value) { value["restitution"] = random_.unit(); }
     void change(Geometry& value) {
         physics::BoxShape box;

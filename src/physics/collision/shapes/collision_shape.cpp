@@ -134,6 +134,7 @@ struct Builder {
         }
         return {};
     }
+    Result<void> operator()(const HasParts auto& shape) const { return (*this)(CompoundShape{shape.parts()}); }
 
 private:
     Result<void> add_piece(const HasCorners auto& shape, const Transform& local) const {

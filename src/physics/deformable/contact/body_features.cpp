@@ -54,6 +54,7 @@ struct Finder {
                 features.push_back({transform_point(child.local, feature.point), feature.radius});
         }
     }
+    void operator()(const HasParts auto& shape) const { (*this)(CompoundShape{shape.parts()}); }
     void operator()(const PlaneShape&) const {}
     void operator()(const HeightfieldShape&) const {}
     void operator()(const MeshShape&) const {}

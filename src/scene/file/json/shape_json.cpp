@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "scene/document/document_field.h"
 #include "scene/file/json/field_reader.h"
@@ -112,6 +113,55 @@ void read_fields(FieldReader& reader, CompoundShape& compound) {
     }
 }
 
+WallOpening read_opening(FieldReader& reader) {
+    WallOpening opening;
+    std::size_t kind = 0;
+    if (reader.need("kind", "hole, door or window") &&
+        reader.choice("kind", kind, {opening_kinds[0], opening_kinds[1], opening_kinds[2]}))
+        opening.kind = static_cast<OpeningKind>(kind);
+    for (const auto& [name, value] : {std::pair{"offset", &opening.offset}, std::pair{"width", &opening.width},
+                                      std::pair{"height", &opening.height}})
+        if (const json* field = reader.need(name, "a length in metres"))
+            read_number(*field, reader.path(name), *value, reader.error());
+    reader.number("sill", opening.sill, not_negative);
+    int owner = 0;
+    reader.whole("entity", owner, 1, static_cast<int>(last_document_index));
+    opening.owner = static_cast<std::uint32_t>(owner);
+    reader.finish();
+    return opening;
+}
+
+void read_fields(FieldReader& reader, WallShape& wall) {
+    for (const auto& [name, value] : {std::pair{"length", &wall.length}, std::pair{"height", &wall.height},
+                                      std::pair{"thickness", &wall.thickness}})
+        if (const json* field = reader.need(name, a_length))
+            read_number(*field, reader.path(name), *value, reader.error(), positive);
+    reader.number("rise", wall.rise);
+    reader.numbers("start_cut", wall.start_cut);
+    reader.numbers("end_cut", wall.end_cut);
+    const json* list = reader.list("openings");
+    if (!list) return;
+    for (std::size_t i = 0; i < list->size() && reader.ok(); ++i) {
+        FieldReader item((*list)[i], element_path(reader.path("openings"), i), reader.error());
+        wall.openings.push_back(read_opening(item));
+    }
+}
+
+void read_fields(FieldReader& reader, SlabShape& slab) {
+    if (const json* field = reader.need("thickness", a_length))
+        read_number(*field, reader.path("thickness"), slab.thickness, reader.error(), positive);
+    const json* list = reader.need("points", "the corners [x, z] in order");
+    if (!list || !read_array(*list, reader.path("points"), reader.error())) return;
+    slab.points.resize(list->size());
+    for (std::size_t i = 0; i < slab.points.size(); ++i) {
+        const json& corner = (*list)[i];
+        const std::string where = element_path(reader.path("points"), i);
+        if (!corner.is_array() || corner.size() != 2) return reader.fail(where, "must be two numbers [x, z]");
+        for (std::size_t k = 0; k < 2; ++k)
+            if (!read_number(corner[k], element_path(where, k), slab.points[i][k], reader.error())) return;
+    }
+}
+
 // Writers of the alternatives.
 struct ShapeWriter {
     json operator()(const HasLengths auto& s) const {
@@ -141,6 +191,25 @@ struct ShapeWriter {
         json triangles = json::array();
         for (const auto& t : s.triangles) triangles.push_back(json::array({t[0], t[1], t[2]}));
         return {{"type", s.name}, {"positions", std::move(positions)}, {"triangles", std::move(triangles)}};
+    }
+    json operator()(const WallShape& s) const {
+        json written = {{"type", s.name}, {"length", s.length}, {"height", s.height}, {"thickness", s.thickness}};
+        if (s.rise != 0) written["rise"] = s.rise;
+        if (s.start_cut != WallShape{}.start_cut) written["start_cut"] = s.start_cut;
+        if (s.end_cut != WallShape{}.end_cut) written["end_cut"] = s.end_cut;
+        for (const WallOpening& opening : s.openings) {
+            json one = {{"kind", opening_kinds[static_cast<std::size_t>(opening.kind)]},
+                        {"offset", opening.offset},
+                        {"width", opening.width},
+                        {"height", opening.height},
+                        {"sill", opening.sill}};
+            if (opening.owner != 0) one["entity"] = opening.owner;
+            written["openings"].push_back(std::move(one));
+        }
+        return written;
+    }
+    json operator()(const SlabShape& s) const {
+        return {{"type", s.name}, {"thickness", s.thickness}, {"points", s.points}};
     }
     json operator()(const CompoundShape& s) const {
         json children = json::array();

@@ -29,6 +29,7 @@ std::span<const Command> people_commands();
 std::span<const Command> scene_commands();
 std::span<const Command> entity_commands();
 std::span<const Command> placement_commands();
+std::span<const Command> room_commands();
 std::span<const Command> arrange_commands();
 std::span<const Command> group_commands();
 std::span<const Command> part_commands();
