@@ -2,10 +2,12 @@
 import "./style/theme.css";
 import "./style/layout.css";
 import "./style/panels.css";
+import "./style/build.css";
 import "./style/narrow.css";
 import "./style/time.css";
 import { ArrangeBar } from "./panels/arrange_bar";
 import { AttributeList } from "./panels/attribute_list";
+import { BuildBar, buildActions } from "./panels/build_bar";
 import { openContextMenu } from "./panels/context_menu";
 import { DragIn } from "./panels/drag_in";
 import { element, show } from "./panels/element";
@@ -16,6 +18,7 @@ import { openHistory } from "./panels/history";
 import { HeadsetButtons } from "./panels/headset_buttons";
 import { Hierarchy } from "./panels/hierarchy";
 import { Layout } from "./panels/layout";
+import { LevelBar, planActions } from "./panels/level_bar";
 import { LibraryProgress } from "./panels/library_progress";
 import { ModelBrowser } from "./panels/model_browser";
 import { ModelFields } from "./panels/model_fields";
@@ -36,6 +39,8 @@ import { Studio } from "./studio";
 import { offerTestHook } from "./test_hook";
 import { timeActions } from "./time/time_actions";
 import { Timeline } from "./time/timeline";
+import { BuildTool } from "./tools/build_tool";
+import { Measures } from "./tools/measures";
 import { keepPoses, makeActions, type UserAction } from "./tools/actions";
 import { Gizmo } from "./tools/gizmo";
 import { Keyboard } from "./tools/keys";
@@ -61,7 +66,9 @@ try {
 function start(): void {
   const studio = new Studio(canvas);
   const gizmo = new Gizmo(studio);
+  const build = new BuildTool(studio);
   const pointer = new Pointer(studio, gizmo);
+  new Measures(studio);
   const dragIn = new DragIn(studio);
   const browser = new ModelBrowser(studio, dragIn);
   const left = leftPanel(browser, new Hierarchy(studio), new LibraryProgress(studio));
@@ -83,8 +90,8 @@ function start(): void {
   });
   actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
-  actions.push(...timeActions(studio, () => void keepPoses(studio)));
-
+  const building = buildActions(build);
+  actions.push(...building, ...planActions(studio), ...timeActions(studio, () => void keepPoses(studio)));
   new Keyboard(studio, actions, pointer);
   pointer.menuWanted.on((at) => openContextMenu(studio, actions, at));
   new FileDrop(studio, () => browser.refresh());
@@ -103,7 +110,9 @@ function start(): void {
   new Touches(canvas, studio.view.rig, pointer);
   const tour = new Tour(studio, pointer.grabbed);
   actions.push({ id: "view.tour", label: "First steps", group: "View", keys: [], run: () => tour.begin() });
-  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root);
+  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
+  build.changed.on(() => toolbar.refresh());
+  studio.view.rig.planned.on(() => toolbar.refresh());
   document.body.append(new Toasts(studio).root);
 
   const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
 import type { DebugName } from "./debug_frame";
-import type { Action, Camera, Entity, Joint, Pose, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
+import type { Action, Camera, Entity, Joint, Level, Pose, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
 
 export interface ModelSummary {
   id: number;
@@ -343,7 +343,8 @@ export interface Commands {
   "scene.versions": [{ name?: string }, { versions: { version: string; modified: string | null }[] }];
   "scene.discard": [{ name: string }, unknown];
   "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
-  "scene.settings": [Partial<SceneSettings> & { title?: string }, unknown];
+  "scene.settings": [Partial<SceneSettings> & { title?: string; levels?: Level[] }, unknown];
+  "room.add": [{ points: Vector[]; closed?: boolean; floor?: boolean; ceiling?: boolean; height?: number; thickness?: number }, { indices: number[] }];
   "entity.add": [{ entity: NewEntity; drop?: Drop }, { index: number }];
   "entity.preview": [{ entity: NewEntity; drop: Drop } | { index: number }, Placed];
   "entity.drag": [{ indices: number[]; drop: Drop; merge?: string }, Placed];
@@ -396,7 +397,7 @@ export type DocumentChange =
   | { op: "entity"; entity: Entity }
   | { op: "pose"; index: number; pose: Pose }
   | { op: "entity_removed"; index: number }
-  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string; camera?: Scene["camera"] | null } }
+  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string; camera?: Scene["camera"] | null; levels?: Level[] } }
   | { op: "joint"; joint: Joint }
   | { op: "joint_removed"; index: number }
   | { op: "action"; action: Action }

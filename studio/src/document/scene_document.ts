@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { DocumentChange, DocumentEvent, Hello } from "../connection/messages";
 import { Signal } from "../signal";
-import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
+import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Level, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
 
 /** Parts of the document that changed with an event. */
 export interface Changed {
@@ -30,6 +30,7 @@ export class SceneDocument {
   readonly actions = new Map<number, Action>();
   settings: SceneSettings = DEFAULT_SETTINGS;
   camera: Camera | null = null;
+  levels: readonly Level[] = [];
   title = "";
   description = "";
   name = "";
@@ -119,6 +120,7 @@ export class SceneDocument {
     for (const action of scene.actions ?? []) this.actions.set(action.id, action);
     this.settings = { ...DEFAULT_SETTINGS, ...scene.settings };
     this.camera = scene.camera ?? null;
+    this.levels = scene.levels ?? [];
     this.title = scene.title ?? "Untitled";
     this.description = scene.description ?? "";
   }
@@ -167,11 +169,12 @@ export class SceneDocument {
     }
   }
 
-  private applySettings({ title, description, camera, ...settings }: Extract<DocumentChange, { op: "settings" }>["settings"]): void {
+  private applySettings({ title, description, camera, levels, ...settings }: Extract<DocumentChange, { op: "settings" }>["settings"]): void {
     this.settings = { ...this.settings, ...settings };
     this.title = title ?? this.title;
     this.description = description ?? this.description;
     if (camera !== undefined) this.camera = camera;
+    this.levels = levels ?? this.levels;
   }
 }
 

@@ -11,6 +11,7 @@ const GROUPS = [
   ["edit.undo", "edit.redo", "edit.delete"],
   ["tool.select", "tool.move", "tool.rotate", "tool.scale"],
   ["tool.space", "tool.snap"],
+  ["build.wall", "view.plan"],
   ["simulation.reset", "simulation.play", "simulation.step", "simulation.keep"],
 ];
 const GROUPS_RIGHT = [["catalog.history"], ["view.tint", "view.options", "view.screenshot", "view.palette", "view.help"]];
@@ -76,7 +77,7 @@ export class Toolbar {
     return button;
   }
 
-  private refresh(): void {
+  refresh(): void {
     const { document: scene, playback } = this.parts;
     for (const [action, button] of this.buttons) {
       button.disabled = !(action.possible?.() ?? true);

@@ -68,6 +68,12 @@ const ICONS = {
   backspace: "M5.5 3.5h9v9h-9L1.5 8zM8 6l4 4M12 6l-4 4",
   up: "M3.5 10.5L8 5.5l4.5 5",
   down: "M3.5 5.5l4.5 5 4.5-5",
+  wall: "M1.5 4h13v8h-13zM1.5 8h13M6 4v4M10.5 4v4M4 8v4M8.5 8v4M12.5 8v4",
+  room: "M2 2h12v12H9.5M6.5 14H2zM6.5 14a3 3 0 0 1 3-3v3",
+  door: "M4 14V2h8v12M2 14h12M9.8 8.2v.4",
+  window: "M2.5 2.5h11v11h-11zM8 2.5v11M2.5 8h11",
+  hole: "M1.5 3h13v11H11V7H5v7H1.5z",
+  plan: "M2 2h12v12H2zM2 9h5M7 6v3M10 9h4M10 14V9",
   drop: "M8 2v8M5 7.5L8 10.5l3-3M2.5 13.5h11",
 } as const;
 

@@ -87,8 +87,9 @@ export class Pointer {
     }
     [this.lastX, this.lastY] = [event.clientX, event.clientY];
     const { view } = this.parts;
-    if (gesture.kind === "orbit") view.rig.orbit(dx, dy);
-    else if (gesture.kind === "pan") view.rig.pan(dx, dy, view.canvas.clientHeight);
+    const turns = gesture.kind === "orbit" || gesture.kind === "look";
+    if (gesture.kind === "orbit" && !view.rig.isPlan) view.rig.orbit(dx, dy);
+    else if (gesture.kind === "pan" || (turns && view.rig.isPlan)) view.rig.pan(dx, dy, view.canvas.clientHeight);
     else if (gesture.kind === "look") view.rig.look(dx, dy);
     else if (gesture.kind === "grab") this.pull(event);
     else if (gesture.kind === "slide") this.slide(gesture, event);

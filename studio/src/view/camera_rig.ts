@@ -18,19 +18,28 @@ const LEAST_FOCUS = 0.3;
 /** Vertical angle of view in degrees, while the picture is at least this many times as wide as high. */
 const VIEW_ANGLE = 45;
 const USUAL_ASPECT = 1.4;
+/** Of the plan: so narrow that nothing is seen in perspective. */
+const PLAN_ANGLE = 1;
+const PLAN_TILT = 1e-4;
+const NEAR = 0.03;
+const FAR = 3000;
 
 /** The camera: it looks at a target from a distance; orbits, pans, zooms and flies. The caller decides which gesture means what. */
 export class CameraRig {
-  readonly camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.03, 3000);
+  readonly camera = new PerspectiveCamera(VIEW_ANGLE, 1, NEAR, FAR);
   readonly target = new Vector3(0, 0.5, 0);
   readonly changed = new Signal<void>();
   /** The user moved the camera. */
   readonly steered = new Signal<void>();
+  /** The plan is shown, or not any more. */
+  readonly planned = new Signal<void>();
   private readonly arm = new Spherical(6, 1.15, 0.6);
   /** Metres per second to the right, up and back while flying. */
   private readonly flight = new Vector3();
   private glide: { fromTarget: Vector3; toTarget: Vector3; fromArm: Spherical; toArm: Spherical; start: number } | null = null;
   private readonly step = new Vector3();
+  /** While the plan is shown: where the camera was. */
+  private before: { arm: Spherical; target: Vector3 } | null = null;
 
   constructor() {
     this.apply();
@@ -40,8 +49,37 @@ export class CameraRig {
     return this.arm.radius;
   }
 
-  /** Where the camera is and what it looks at, in millimetres. */
+  /** The distance from which the picture would show as much at the usual angle. */
+  get reach(): number {
+    return this.before ? this.arm.radius / planFactor() : this.arm.radius;
+  }
+
+  get isPlan(): boolean {
+    return this.before !== null;
+  }
+
+  /** The plan: from straight above, north up, without perspective; and back to where the camera was. */
+  setPlan(on: boolean): void {
+    if (on === this.isPlan) return;
+    this.glide = null;
+    if (this.before) {
+      const { arm, target } = this.before;
+      // Back over the place that the plan showed last.
+      this.target.set(this.target.x, target.y, this.target.z);
+      this.arm.copy(arm);
+      this.before = null;
+    } else {
+      this.before = { arm: this.arm.clone(), target: this.target.clone() };
+      this.arm.set(this.arm.radius * planFactor(), PLAN_TILT, 0);
+    }
+    this.fit(this.camera.aspect);
+    this.apply();
+    this.planned.emit();
+  }
+
+  /** Where the camera is and what it looks at, in millimetres; of the plan what was seen before it. */
   seen(): Camera {
+    if (this.before) return { position: new Vector3().setFromSpherical(this.before.arm).add(this.before.target).toArray() as Vector, target: this.before.target.toArray() as Vector };
     const round = (length: number) => Math.round(length * 1000) / 1000;
     return { position: this.camera.position.toArray().map(round) as Vector, target: this.target.toArray().map(round) as Vector };
   }
@@ -49,13 +87,15 @@ export class CameraRig {
   /** Takes over the picture's aspect; in a narrow picture the horizontal angle of view stays the usual one. */
   fit(aspect: number): void {
     this.camera.aspect = aspect;
-    const slope = Math.tan((VIEW_ANGLE * Math.PI) / 360) * Math.max(1, USUAL_ASPECT / aspect);
+    const slope = Math.tan(((this.before ? PLAN_ANGLE : VIEW_ANGLE) * Math.PI) / 360) * Math.max(1, USUAL_ASPECT / aspect);
     this.camera.fov = Math.min((360 / Math.PI) * Math.atan(slope), 80);
     this.camera.updateProjectionMatrix();
   }
 
+  /** In the plan nothing turns. */
   orbit(dx: number, dy: number): void {
     this.steer();
+    if (this.before) return;
     this.arm.theta -= dx * ORBIT_PER_PIXEL;
     this.arm.phi = clamp(this.arm.phi - dy * ORBIT_PER_PIXEL, LOWEST, HIGHEST);
     this.apply();
@@ -74,13 +114,15 @@ export class CameraRig {
 
   zoom(notches: number): void {
     this.steer();
-    this.arm.radius = clamp(this.arm.radius * ZOOM_PER_NOTCH ** notches, NEAREST, FARTHEST);
+    const factor = this.before ? planFactor() : 1;
+    this.arm.radius = clamp(this.arm.radius * ZOOM_PER_NOTCH ** notches, NEAREST * factor, FARTHEST * factor);
     this.apply();
   }
 
   /** Rotates the view: the camera stays, the target moves around it. */
   look(dx: number, dy: number): void {
     this.steer();
+    if (this.before) return;
     const eye = this.camera.position.clone();
     this.arm.theta -= dx * LOOK_PER_PIXEL;
     this.arm.phi = clamp(this.arm.phi - dy * LOOK_PER_PIXEL, LOWEST, HIGHEST);
@@ -91,7 +133,7 @@ export class CameraRig {
   /** Sets the direction of flight, -1 … 1 along right, up and back; zero stops. */
   fly(right: number, up: number, back: number): void {
     if (right || up || back) this.steer();
-    const speed = Math.max(1, 0.8 * this.arm.radius);
+    const speed = Math.max(1, 0.8 * this.reach);
     this.flight.set(right, up, back).multiplyScalar(speed);
     this.changed.emit();
   }
@@ -101,13 +143,15 @@ export class CameraRig {
     if (bounds.isEmpty()) return;
     const toArm = this.arm.clone();
     const toTarget = bounds.getCenter(new Vector3());
-    toArm.radius = clamp(this.distanceFor(bounds, toTarget), NEAREST, FARTHEST);
+    const factor = this.before ? planFactor() : 1;
+    toArm.radius = clamp(this.distanceFor(bounds, toTarget), NEAREST * factor, FARTHEST * factor);
     this.glideTo(toTarget, toArm, jump ? now - FLY_TIME_MS : now);
     if (jump) this.advance(now, 0);
   }
 
   /** Moves smoothly to `position`, looking at `target`. */
   goTo(position: readonly number[], target: readonly number[], now: number): void {
+    this.setPlan(false);
     const toTarget = new Vector3().fromArray(target);
     const toArm = armTo(position, toTarget);
     // The shorter way around.
@@ -144,6 +188,7 @@ export class CameraRig {
 
   /** Puts the camera at `position`, looking at `target`. */
   place(position: readonly number[], target: readonly number[]): void {
+    this.setPlan(false);
     this.target.fromArray(target);
     this.arm.copy(armTo(position, this.target));
     this.glide = null;
@@ -179,8 +224,19 @@ export class CameraRig {
   private pose(): void {
     this.camera.position.setFromSpherical(this.arm).add(this.target);
     this.camera.lookAt(this.target);
+    const near = this.before ? Math.max(NEAR, 0.5 * this.arm.radius) : NEAR;
+    if (this.camera.near !== near) {
+      this.camera.near = near;
+      this.camera.far = this.before ? 1.5 * this.arm.radius + FAR : FAR;
+      this.camera.updateProjectionMatrix();
+    }
     this.camera.updateMatrix();
   }
+}
+
+/** So many times farther away the plan is seen from. */
+function planFactor(): number {
+  return Math.tan((VIEW_ANGLE * Math.PI) / 360) / Math.tan((PLAN_ANGLE * Math.PI) / 360);
 }
 
 /** The arm from the target to the position. */

@@ -57,6 +57,8 @@ export class EntityView {
   tinted: TintStrength = "off";
   /** Poses and scales of entities while the user drags them; they replace the server's. */
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
+  /** Things that stand at this height or higher are not drawn, m: of a building the storeys above. */
+  private ceiling = Infinity;
   /** An entity was moved, added or removed since the shadows were drawn. */
   shadowsAreOld = true;
   /** Entities that were moved, added or removed since their contact shadows were drawn. */
@@ -158,6 +160,15 @@ export class EntityView {
     return this.softs.advance(now, this.motion.moved) || cloudsMove;
   }
 
+  /** Draws nothing that stands at this height or higher; Infinity: everything. */
+  cutAbove(height: number): void {
+    if (height === this.ceiling) return;
+    this.ceiling = height;
+    for (const index of this.known()) this.put(index);
+    this.shadowsAreOld = true;
+    this.loaded.emit();
+  }
+
   setQuality(quality: Quality): void {
     this.quality = quality;
     this.clouds.setQuality(quality);
@@ -243,7 +254,7 @@ export class EntityView {
     if (!entity) return;
     if (!this.motion.pose(index, 0, this.position, this.rotation))
       this.motion.place(index, positionOf(entity.pose), rotationOf(entity.pose));
-    if (entity.enabled === false || this.document.absent.has(index) || this.document.waiting.has(index)) {
+    if (entity.enabled === false || positionOf(entity.pose)[1] >= this.ceiling || this.document.absent.has(index) || this.document.waiting.has(index)) {
       this.take(index);
       return;
     }

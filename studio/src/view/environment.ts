@@ -71,9 +71,9 @@ export class Environment {
     this.grid.visible = shown;
   }
 
-  /** Moves shadows and fog to the point that the camera looks at, `distance` metres away; returns whether the sun moved. */
-  follow(target: Vector3, distance: number): boolean {
-    const reach = Math.max(SHADOW_REACH_LEAST, 1.4 * distance);
+  /** Moves shadows and fog to the point that the camera looks at, `distance` metres away, seeing as much as from `seen`; returns whether the sun moved. */
+  follow(target: Vector3, distance: number, seen = distance): boolean {
+    const reach = Math.max(SHADOW_REACH_LEAST, 1.4 * seen);
     const camera = this.sun.shadow.camera;
     const resized = Math.abs(camera.right - reach) > 0.15 * reach;
     if (resized) {

@@ -276,7 +276,7 @@ export class View {
     this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
     const { target, distance } = this.headset ?? this.rig;
-    const sunMoved = this.environment.follow(target, distance);
+    const sunMoved = this.environment.follow(target, distance, this.headset ? distance : this.rig.reach);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
     this.entities.shadowsAreOld = false;
     return moving;
