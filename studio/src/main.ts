@@ -103,14 +103,14 @@ function start(): void {
   show(entityFields.root, false);
   show(attributes.root, false);
   const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root);
-  app.append(toolbar.root, left.root, right, timeline.root, new StatusBar(studio).root);
+  app.append(toolbar.root, left.root, right, timeline.plots.root, new StatusBar(studio).root);
   const layout = new Layout(studio, app, scene, { left: left.root, right });
   actions.push(...layout.actions);
   dragIn.began.on(() => layout.freeScene());
   new Touches(canvas, studio.view.rig, pointer);
   const tour = new Tour(studio, pointer.grabbed);
   actions.push({ id: "view.tour", label: "First steps", group: "View", keys: [], run: () => tour.begin() });
-  scene.append(new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
+  scene.append(timeline.root, new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
   build.changed.on(() => toolbar.refresh());
   studio.view.rig.planned.on(() => toolbar.refresh());
   document.body.append(new Toasts(studio).root);

@@ -18,7 +18,7 @@ const RATES: readonly { rate: number; label: string }[] = [
   { rate: 0.05, label: "1⁄20×" },
 ];
 
-/** The bar under the scene: what has run, as a line to look back on, and what can be done with a moment of it. */
+/** The bar over the lower edge of the scene, which it does not move when it appears: what has run, as a line to look back on, and what can be done with a moment of it. */
 export class Timeline {
   readonly root: HTMLElement;
   readonly track: Track;
@@ -47,7 +47,7 @@ export class Timeline {
     this.fold.addEventListener("click", () => parts.preferences.set("timelineFolded", !parts.preferences.get("timelineFolded")));
     const button = (name: string, label: string, symbol: Parameters<typeof icon>[0], run: () => void) =>
       element("button", { class: "tool-button", title: label, "aria-label": label, "data-testid": name, onclick: run }, icon(symbol));
-    this.body = element("div", { class: "time-body" }, element("div", { class: "track-frame" }, this.track.root), this.plots.root);
+    this.body = element("div", { class: "track-frame" }, this.track.root);
     this.root = element(
       "section",
       { class: "timeline", "aria-label": "Time", "data-testid": "timeline" },
@@ -68,6 +68,8 @@ export class Timeline {
       this.body,
       this.badge,
     );
+    // What else lies over the scene makes room for it.
+    new ResizeObserver(() => this.root.parentElement?.style.setProperty("--timeline", `${this.root.offsetHeight}px`)).observe(this.root);
     const update = () => this.update();
     parts.take.changed.on(update);
     parts.playback.changed.on(update);
