@@ -79,7 +79,7 @@ class Person:
             self.told[height] = (self.number, time.monotonic())
             command = self.viewer.ask("entity.transform", poses=[{"index": chance.randrange(2, BOXES + 2), "position": [chance.uniform(0, 10), height, chance.uniform(0, 10)]}])
         elif act < 0.8:
-            command = self.viewer.ask("entity.set_attribute", indices=[chance.randrange(2, BOXES + 2)], name="friction", value=chance.uniform(0.1, 1))
+            command = self.viewer.ask("entity.set_attribute", indices=[chance.randrange(2, BOXES + 2)], name="friction_dynamic", value=chance.uniform(0.1, 1))
         elif act < 0.9:
             command = self.viewer.ask("edit.undo")
         elif act < 0.95:

@@ -47,12 +47,12 @@ struct EntityState {
 struct SessionOptions {
     std::filesystem::path
         saved_scenes;  ///< folder of the user's scenes; journals go to its sub-folder "autosave". Empty: none is kept
-    std::filesystem::path demo_scenes;           ///< folder of the scenes that come with Embody
-    std::size_t take_bytes = Take::usual_bytes;  ///< maximum size of what is recorded of a run
-    std::function<bool()> stop_wanted = {};      ///< called between the steps of simulation.step; true ends it early
+    std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
+    std::function<bool()> stop_wanted = {};  ///< called between the steps of simulation.step; true ends it early
     /// Called at intervals with the progress of the running command; false ends it, and nothing is changed. May be
     /// empty.
     std::function<bool(std::size_t done, std::size_t total)> progress = {};
+    std::size_t take_bytes = Take::usual_bytes;  ///< maximum size of what is recorded of a run
 };
 
 /// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md except those
