@@ -14,6 +14,7 @@ find_package(PNG REQUIRED)
 find_package(OpenSSL REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
+pkg_check_modules(pugixml REQUIRED IMPORTED_TARGET pugixml)
 pkg_check_modules(qrencode REQUIRED IMPORTED_TARGET libqrencode)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
 find_package(embree 3 REQUIRED)
@@ -32,7 +33,7 @@ endif()
 
 # Groups by the layer that uses them.
 add_library(embody_model_readers INTERFACE)
-target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip JPEG::JPEG PNG::PNG PkgConfig::stb
+target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::pugixml JPEG::JPEG PNG::PNG PkgConfig::stb
                       nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer)
 if(TARGET Coin::Coin)
   target_link_libraries(embody_model_readers INTERFACE Coin::Coin)

@@ -42,6 +42,7 @@ public:
         app_.failure_message(CLI::FailureMessage::simple);
         add_serve();
         add_import();
+        add_import_home();
         add_search();
         add_show();
         add_set();
@@ -139,6 +140,16 @@ private:
             ->check(CLI::Range(0, 256));
         c.app->add_flag("--again", c.into->again, "Also read files that are unchanged since the last import");
         add_json(c);
+    }
+    void add_import_home() {
+        auto c = add<ImportHomeArguments>(
+            "import-home", "Make a scene of a home of Sweet Home 3D, and bring its furniture into the database",
+            "embody import-home flat.sh3d -o flat.json");
+        add_database(c);
+        c.app->add_option("home", c.into->home, "The home (.sh3d)")->required();
+        c.app->add_option("-o,--output", c.into->output, "The scene file (default: standard output)");
+        c.app->add_option("--workers", c.into->workers, "Processes that read models (default: one per core)")
+            ->check(CLI::Range(0, 256));
     }
     void add_search() {
         auto c = add<SearchArguments>("search", "Find models by words in name, tags, category and source",

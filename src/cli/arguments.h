@@ -34,6 +34,12 @@ struct ImportArguments {
     bool again = false;
     bool json = false;
 };
+struct ImportHomeArguments {
+    std::filesystem::path database;
+    std::filesystem::path home;
+    std::filesystem::path output;  ///< empty: standard output
+    int workers = 0;
+};
 struct SearchArguments {
     std::filesystem::path database;
     std::vector<std::string> words;
@@ -139,8 +145,8 @@ struct BenchArguments {
 };
 
 using Arguments =
-    std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments, ResetArguments,
-                 HistoryArguments, UndoArguments, SimulateArguments, CheckArguments, ClassifyArguments,
+    std::variant<ServeArguments, ImportArguments, ImportHomeArguments, SearchArguments, ShowArguments, SetArguments,
+                 ResetArguments, HistoryArguments, UndoArguments, SimulateArguments, CheckArguments, ClassifyArguments,
                  AttributesArguments, EvaluateArguments, SceneArguments, BenchArguments>;
 
 /// Exit codes of the program.

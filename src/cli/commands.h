@@ -9,6 +9,7 @@ namespace embody::cli {
 
 int run_serve(const ServeArguments& arguments);
 int run_import(const ImportArguments& arguments);
+int run_import_home(const ImportHomeArguments& arguments);
 int run_search(const SearchArguments& arguments);
 int run_show(const ShowArguments& arguments);
 int run_set(const SetArguments& arguments);

@@ -8,6 +8,7 @@ namespace {
 struct Runner {
     int operator()(const ServeArguments& arguments) const { return run_serve(arguments); }
     int operator()(const ImportArguments& arguments) const { return run_import(arguments); }
+    int operator()(const ImportHomeArguments& arguments) const { return run_import_home(arguments); }
     int operator()(const SearchArguments& arguments) const { return run_search(arguments); }
     int operator()(const ShowArguments& arguments) const { return run_show(arguments); }
     int operator()(const SetArguments& arguments) const { return run_set(arguments); }

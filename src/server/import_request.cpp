@@ -5,6 +5,9 @@
 #include <string>
 
 #include "catalog/catalog.h"
+#include "interchange/sweethome/sweethome_home.h"
+#include "scene/file/scene_file.h"
+#include "scene/home/home_document.h"
 
 namespace embody::server {
 namespace {
@@ -75,8 +78,18 @@ HttpResponse ImportRequests::import(const Upload& upload) const {
     auto report = (*catalog)->import({upload.file()}, options);
     if (!report) return error_response(422, name, report.error().why, report.error().remedy);
     HttpResponse response;
-    response.body = report_json(*report).dump(-1, ' ', false, json::error_handler_t::replace);
-    if (report->added + report->updated + report->unchanged == 0) response.status = 422;
+    json answer = report_json(*report);
+    if (interchange::is_sweethome_home(upload.file())) {
+        // Its furniture is in the database now; the client opens its plan.
+        const auto home = interchange::read_sweethome_home(upload.file());
+        if (!home) return error_response(422, name, home.error().why, home.error().remedy);
+        const auto made = scene::document_of_home(*home, upload.file().stem().string(),
+                                                  [&](const std::string& key) { return (*catalog)->model(key).ok(); });
+        answer["scene"] = scene::document_to_json(made.document);
+        answer["notes"] = made.notes;
+    }
+    response.body = answer.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (!answer.contains("scene") && report->added + report->updated + report->unchanged == 0) response.status = 422;
     return response;
 }
 

@@ -12,13 +12,14 @@
 #include "interchange/archive/archive.h"
 #include "interchange/read_model.h"
 #include "interchange/sweethome/sweethome_catalogue.h"
+#include "interchange/sweethome/sweethome_home.h"
 
 namespace embody::catalog {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 3> archive_extensions{".sh3f", ".jar", ".zip"};
+constexpr std::array<std::string_view, 4> archive_extensions{".sh3f", ".sh3d", ".jar", ".zip"};
 
 bool is_archive(const fs::path& path) {
     return std::find(archive_extensions.begin(), archive_extensions.end(), interchange::extension_of(path)) !=
@@ -165,6 +166,11 @@ struct Walk {
 
     // In a folder, a jar or zip without models belongs to something else and is no failure.
     void add_archive(const fs::path& file, bool named_by_user) {
+        if (interchange::is_sweethome_home(file)) {
+            auto home = interchange::read_sweethome_home(file);
+            if (home) return add_catalogue(file, std::move(home->furniture));
+            return fail(file, home.error().why, home.error().remedy);
+        }
         auto catalogue = interchange::read_sweethome_catalogue(file);
         if (catalogue) return add_catalogue(file, std::move(*catalogue));
         auto archive = interchange::Archive::open(file);

@@ -51,9 +51,9 @@ struct WallShape {
 
     friend bool operator==(const WallShape&, const WallShape&) = default;
 };
-inline constexpr std::size_t max_openings = 256;
-inline constexpr double pane_thickness = 0.02;  ///< of a window's glass, m
-inline constexpr double thinnest_piece = 1e-4;  ///< m: what is left of a wall and thinner is left out
+inline constexpr std::size_t max_openings = 256;  ///< of one wall; each makes up to four more parts
+inline constexpr double pane_thickness = 0.02;    ///< of a window's glass, m
+inline constexpr double thinnest_piece = 1e-4;    ///< m: what is left of a wall and thinner is left out
 
 /// A floor or a ceiling: a simple polygon of corners [x, z], its upper side at y = 0.
 struct SlabShape {
@@ -66,6 +66,6 @@ struct SlabShape {
 
     friend bool operator==(const SlabShape&, const SlabShape&) = default;
 };
-inline constexpr std::size_t max_slab_points = 500;
+inline constexpr std::size_t max_slab_points = 500;  ///< whether sides cross is tried pair by pair
 
 }  // namespace embody::physics

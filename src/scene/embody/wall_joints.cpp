@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/shape_bounds.h"
+
 namespace embody::scene {
 
 namespace {
@@ -64,6 +66,8 @@ void mitre(const std::vector<WallEnd>& ends) {
     std::stable_sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) { return a.angle < b.angle; });
     for (std::size_t i = 0; i < spokes.size(); ++i) join(spokes[i], spokes[(i + 1) % spokes.size()]);
 }
+
+Bounds box_around(const physics::ShapeDefinition& shape) { return physics::bounds_of(shape); }
 
 std::optional<physics::WallOpening> opening_of(const physics::WallShape& wall, const Transform& local, Vec3 size) {
     constexpr double straight = 0.99;  // cosine: it stands along the wall

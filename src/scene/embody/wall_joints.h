@@ -4,8 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "math/bounds.h"
 #include "math/transform.h"
-#include "physics/definitions/building_shapes.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 
@@ -28,6 +29,9 @@ Vec3 point_of(const WallEnd& end);
 /// is square. Walls that go on in one line keep square ends. A corner as sharp as to need more than three times the two
 /// thicknesses, or nearly half of a wall, is cut by that much only.
 void mitre(const std::vector<WallEnd>& ends);
+
+/// The box around a primitive, in its frame; empty where it has no end.
+Bounds box_around(const physics::ShapeDefinition& shape);
 
 /// The opening that a door or window of this size cuts into the wall that it stands in, at a pose in the wall's frame
 /// whose origin is the middle of its base; none where it does not stand in it, along it.

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include "physics/definitions/shape_bounds.h"
 #include "scene/embody/wall_joints.h"
 
 namespace embody::scene {
@@ -49,7 +48,7 @@ std::optional<Fitting> fitting_of(SessionState& state, const Entity& entity) {
     Fitting fitting;
     if (const auto* shape = std::get_if<ShapeDefinition>(&entity.geometry)) {
         if (!is_in(doors, category) && !is_in(windows, category)) return std::nullopt;
-        const Bounds bounds = physics::bounds_of(*shape);
+        const Bounds bounds = box_around(*shape);
         if (bounds.is_empty()) return std::nullopt;
         fitting.size = bounds.size();
         fitting.middle = {bounds.center().x, bounds.lower.y, bounds.center().z};

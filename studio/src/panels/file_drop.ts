@@ -3,7 +3,7 @@ import type { ServerError } from "../connection/messages";
 import { entityOf } from "../document/entity_of_model";
 import type { Parts } from "../parts";
 import { addUnder } from "../tools/ghost";
-import { openSceneFile } from "./scene_dialogs";
+import { openScene, openSceneFile } from "./scene_dialogs";
 
 const LARGEST_BYTES = 256 * 1024 * 1024;
 
@@ -13,6 +13,9 @@ interface ImportAnswer {
   unchanged: number;
   failures: { path: string; why: string }[];
   keys: string[];
+  /** Of a home of Sweet Home 3D: its plan as a scene, and what is not as in the home. */
+  scene?: unknown;
+  notes?: string[];
 }
 
 /** Files from the desktop: scenes are opened; models are imported, and added to the scene where they were dropped. */
@@ -68,6 +71,11 @@ export class FileDrop {
         return [];
       }
       for (const failure of report.failures) notices.tell({ level: "error", text: `${failure.path}: ${failure.why}` });
+      for (const note of report.notes ?? []) notices.tell({ level: "info", text: `${file.name}: ${note}` });
+      if (report.scene) {
+        await openScene(this.parts, { scene: report.scene });
+        return [];
+      }
       if (report.failures.length === 0) notices.tell({ level: "info", text: `${file.name} is in the model database` });
       return report.keys ?? [];
     } catch (error) {

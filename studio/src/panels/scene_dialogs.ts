@@ -38,7 +38,7 @@ function mayLeave(parts: Opener): Promise<boolean> {
 }
 
 /** Opens a scene, after asking whether unsaved work may be left; where others are here, the server asks them. */
-async function openScene(parts: Opener, params: Commands["scene.load"][0]): Promise<void> {
+export async function openScene(parts: Opener, params: Commands["scene.load"][0]): Promise<void> {
   if (!(await mayLeave(parts))) return;
   const result = await parts.server.command("scene.load", params);
   if (result) parts.opening.wait(result);

@@ -37,10 +37,10 @@ void read_corners(FieldReader& reader, Plan& plan) {
         const std::string where = element_path("points", i);
         Vec3 corner;
         if (!read_vector((*list)[i], where, corner, reader.error())) return;
-        const Vec3 way = plan.corners.empty() ? Vec3{1, 0, 0} : corner - plan.corners.back();
+        const Vec3 along = plan.corners.empty() ? Vec3{1, 0, 0} : corner - plan.corners.back();
         if (!plan.corners.empty() && corner.y != plan.corners.front().y)
             return reader.fail(where + "[1]", "must be as high as the first corner");
-        if (std::hypot(way.x, way.z) < shortest_wall)
+        if (std::hypot(along.x, along.z) < shortest_wall)
             return reader.fail(where, "must be at least 1 cm from the corner before it");
         plan.corners.push_back(corner);
     }
@@ -107,12 +107,12 @@ private:
 Result<void> add_walls(Builder& builder, const Plan& plan) {
     const std::size_t count = plan.is_closed ? plan.corners.size() : plan.corners.size() - 1;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 from = plan.corners[i], way = plan.corners[(i + 1) % plan.corners.size()] - from;
+        const Vec3 from = plan.corners[i], along = plan.corners[(i + 1) % plan.corners.size()] - from;
         physics::WallShape wall;
-        wall.length = std::hypot(way.x, way.z);
+        wall.length = std::hypot(along.x, along.z);
         wall.height = plan.height;
         wall.thickness = plan.thickness;
-        const Transform pose{from, from_axis_angle({0, 1, 0}, std::atan2(-way.z, way.x))};
+        const Transform pose{from, from_axis_angle({0, 1, 0}, std::atan2(-along.z, along.x))};
         if (auto added = builder.add("Wall", "wall", std::move(wall), pose, plan.wall_color); !added.ok()) return added;
     }
     return {};
