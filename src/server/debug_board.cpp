@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "server/debug_board.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "physics/inter/debug_draw.h"
@@ -14,8 +15,8 @@ using nlohmann::json;
 constexpr std::uint32_t frame_magic = 0x44424D45;  // "EMBD"
 constexpr std::uint16_t frame_version = 1;
 /// A frame is at most about 3 MB.
-constexpr physics::DebugDrawOptions options_of(std::uint32_t flags) {
-    return {.flags = flags, .max_lines = 60'000, .max_points = 120'000};
+physics::DebugDrawOptions options_of(std::uint32_t flags, const std::vector<std::uint64_t>& only) {
+    return {.flags = flags, .max_lines = 60'000, .max_points = 120'000, .only = only};
 }
 
 /// Collects lines and points by their meaning.
@@ -75,11 +76,23 @@ Result<std::uint32_t> flag_named(const json& name, const std::string& where) {
     return Error{where, "is nothing that can be shown", "use some of " + all};
 }
 
+// Indices of entities, ascending.
+Result<std::vector<std::uint64_t>> read_entities(const json& list) {
+    if (!list.is_array()) return Error{"of", "must be a list of entities' indices", ""};
+    std::vector<std::uint64_t> entities;
+    for (const json& each : list) {
+        if (!each.is_number_unsigned()) return Error{"of", "must be a list of entities' indices", ""};
+        entities.push_back(each.get<std::uint64_t>());
+    }
+    std::ranges::sort(entities);
+    return entities;
+}
+
 }  // namespace
 
 Result<void> DebugBoard::choose(scene::ClientId client, const json& params) {
     for (const auto& [field, value] : params.items()) {
-        if (field != "show") return Error{field, "is no parameter of debug.draw", "use show"};
+        if (field != "show" && field != "of") return Error{field, "is no parameter of debug.draw", "use show and of"};
     }
     const json show = params.value("show", json());
     if (!show.is_array()) return Error{"show", "must be a list of names", ""};
@@ -89,12 +102,14 @@ Result<void> DebugBoard::choose(scene::ClientId client, const json& params) {
         if (!flag) return flag.error();
         flags |= *flag;
     }
+    const auto only = read_entities(params.value("of", json::array()));
+    if (!only) return only.error();
     if (flags == 0) {
         forget(client);
         return {};
     }
     const std::lock_guard lock(mutex_);
-    wishes_[client] = {flags, nullptr};
+    wishes_[client] = {flags, *only, nullptr};
     return {};
 }
 
@@ -109,19 +124,22 @@ bool DebugBoard::is_wanted() const {
 }
 
 void DebugBoard::publish(const scene::Session& session) {
-    // Each set of flags is drawn once, however many clients chose it, and without holding the lock.
-    std::map<std::uint32_t, std::shared_ptr<const std::string>> frames;
+    // Each choice is drawn once, however many clients made it, and without holding the lock.
+    using Choice = std::pair<std::uint32_t, std::vector<std::uint64_t>>;
+    std::map<Choice, std::shared_ptr<const std::string>> frames;
     {
         const std::lock_guard lock(mutex_);
-        for (const auto& [client, wish] : wishes_) frames[wish.flags] = nullptr;
+        for (const auto& [client, wish] : wishes_) frames[{wish.flags, wish.only}] = nullptr;
     }
-    for (auto& [flags, frame] : frames) {
+    for (auto& [choice, frame] : frames) {
         FrameDraw draw;
-        const physics::DebugDrawCount count = session.debug_draw(draw, options_of(flags));
-        frame = std::make_shared<const std::string>(draw.frame(flags, count, session.simulated_time()));
+        const physics::DebugDrawCount count = session.debug_draw(draw, options_of(choice.first, choice.second));
+        frame = std::make_shared<const std::string>(draw.frame(choice.first, count, session.simulated_time()));
     }
+    // A choice that was made meanwhile has no frame yet.
     const std::lock_guard lock(mutex_);
-    for (auto& [client, wish] : wishes_) wish.frame = frames[wish.flags];
+    for (auto& [client, wish] : wishes_)
+        if (const auto found = frames.find({wish.flags, wish.only}); found != frames.end()) wish.frame = found->second;
 }
 
 std::shared_ptr<const std::string> DebugBoard::take(scene::ClientId client) {

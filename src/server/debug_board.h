@@ -7,6 +7,8 @@
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "foundation/result.h"
 #include "scene/session/session.h"
@@ -17,7 +19,8 @@ namespace embody::server {
 /// "Debug frames"). The scene thread chooses and publishes; the network thread takes.
 class DebugBoard {
 public:
-    /// The command debug.draw: from now on the client receives what `show` of its parameters names.
+    /// The command debug.draw: from now on the client receives what `show` of its parameters names; of the entities in
+    /// `of` alone where that is there.
     Result<void> choose(scene::ClientId client, const nlohmann::json& params);
     /// Removes a client that has left.
     void forget(scene::ClientId client);
@@ -29,7 +32,8 @@ public:
 
 private:
     struct Wish {
-        std::uint32_t flags = 0;  ///< physics::DebugDrawFlag
+        std::uint32_t flags = 0;          ///< physics::DebugDrawFlag
+        std::vector<std::uint64_t> only;  ///< entities, ascending; empty: all
         std::shared_ptr<const std::string> frame;
     };
     mutable std::mutex mutex_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+
 #include "math/bounds.h"
 #include "physics/inter/debug_draw.h"
 
@@ -35,6 +37,11 @@ public:
     [[nodiscard]] const DebugDrawCount& count() const { return count_; }
     [[nodiscard]] bool is_wanted(DebugDrawFlag flag) const {
         return (options.flags & static_cast<std::uint32_t>(flag)) != 0;
+    }
+
+    /// Whether things with this user data are drawn.
+    [[nodiscard]] bool is_meant(std::uint64_t user_data) const {
+        return options.only.empty() || std::ranges::binary_search(options.only, user_data);
     }
 
     const DebugDrawOptions& options;

@@ -11,6 +11,7 @@
 #include "physics/collision/shapes/outline.h"
 #include "physics/inter/debug_canvas.h"
 #include "physics/inter/debug_contacts.h"
+#include "physics/inter/debug_motion.h"
 #include "physics/inter/world.h"
 #include "physics/state/world_state.h"
 
@@ -122,7 +123,17 @@ void draw_impulses(std::span<const DrawnContact> contacts, std::span<const Fluid
 // Between bodies first, then of what bends; particles are many, and come last.
 void draw_touches(const WorldState& world, std::span<const ContactView> views, DebugCanvas& canvas) {
     std::vector<DrawnContact> contacts;
-    for (const ContactView& view : views) contacts.push_back({view.position, view.normal, view.impulse});
+    const auto is_meant = [&](BodyHandle body) {
+        return canvas.is_meant(world.rigid.record(body.index).definition.user_data);
+    };
+    for (const ContactView& view : views)
+        if (is_meant(view.a) || is_meant(view.b)) contacts.push_back({view.position, view.normal, view.impulse});
+    if (!canvas.options.only.empty()) {
+        // What bends and flows has no body of its own.
+        if (canvas.is_wanted(DebugDrawFlag::impulses)) draw_impulses(contacts, {}, canvas);
+        if (canvas.is_wanted(DebugDrawFlag::contacts)) draw_contacts(contacts, canvas);
+        return;
+    }
     add_contacts_of_deformables(world, contacts);
     if (canvas.is_wanted(DebugDrawFlag::impulses)) draw_impulses(contacts, pushes_of_fluids(world), canvas);
     if (!canvas.is_wanted(DebugDrawFlag::contacts)) return;
@@ -140,6 +151,7 @@ void draw_trees(const WorldState& world, DebugCanvas& canvas) {
 void draw_masses(const WorldState& world, DebugCanvas& canvas) {
     for (std::uint32_t body = 0; body < world.rigid.bodies.slot_count(); ++body) {
         if (!world.rigid.bodies.used(body) || !world.rigid.is_dynamic(body)) continue;
+        if (!canvas.is_meant(world.rigid.record(body).definition.user_data)) continue;
         const BodyConstants& constants = world.rigid.constants[body];
         const BodyState& motion = world.rigid.motion[body];
         const bool is_dim = world.activity.is_asleep(body);
@@ -265,6 +277,8 @@ DebugDrawCount World::debug_draw(DebugDraw& draw, const DebugDrawOptions& option
     DebugCanvas canvas(draw, options);
     if (canvas.is_wanted(DebugDrawFlag::contacts) || canvas.is_wanted(DebugDrawFlag::impulses))
         draw_touches(*state_, contacts(), canvas);
+    if (canvas.is_wanted(DebugDrawFlag::velocities)) draw_velocities(*state_, canvas);
+    if (canvas.is_wanted(DebugDrawFlag::forces)) draw_forces(*state_, contacts(), canvas);
     if (canvas.is_wanted(DebugDrawFlag::joints)) draw_joints(*state_, canvas);
     if (canvas.is_wanted(DebugDrawFlag::masses)) draw_masses(*state_, canvas);
     if (canvas.is_wanted(DebugDrawFlag::islands)) draw_islands(*state_, canvas);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "math/vec3.h"
 
@@ -31,6 +32,8 @@ enum class DebugMeaning : std::uint8_t {
     edge,          ///< between two nodes
     attachment,    ///< from a node to the body or node that holds it
     tree,          ///< box of the broad phase; number: depth, 0 the topmost
+    velocity,      ///< of a centre of mass: to where it would be in a fifth of a second
+    force,         ///< on a body; number: 0 its weight, 1 its constant force, 2 of a contact
     count
 };
 
@@ -60,10 +63,12 @@ enum class DebugDrawFlag : std::uint32_t {
     particles = 1u << 7,    ///< of fluids
     deformables = 1u << 8,  ///< nodes, edges and attachments
     trees = 1u << 9,        ///< boxes of the broad phase
+    velocities = 1u << 10,  ///< arrows at centres of mass
+    forces = 1u << 11,      ///< arrows, as long as told by DebugDrawOptions::longest_arrow
 };
 /// Names of the flags: element i is the name of bit i.
-inline constexpr std::array debug_draw_names{"shapes", "bounds", "contacts",  "impulses",    "islands",
-                                             "joints", "masses", "particles", "deformables", "trees"};
+inline constexpr std::array debug_draw_names{"shapes", "bounds",    "contacts",    "impulses", "islands",    "joints",
+                                             "masses", "particles", "deformables", "trees",    "velocities", "forces"};
 
 struct DebugDrawOptions {
     std::uint32_t flags = 0;          ///< DebugDrawFlag
@@ -72,6 +77,9 @@ struct DebugDrawOptions {
     double plane_half_size = 10;      ///< of the square that shows an endless plane, m
     std::size_t max_lines = 100'000;  ///< lines beyond this are left out: shapes come last, static ones at the end
     std::size_t max_points = 200'000;
+    /// Of bodies with these user data alone are contacts, impulses, masses, velocities and forces drawn; ascending;
+    /// empty: of all.
+    std::vector<std::uint64_t> only = {};
 };
 
 struct DebugDrawCount {

@@ -427,6 +427,83 @@ TEST(DebugDraw, WhatIsTooMuchIsLeftOutAndCounted) {
 }
 
 // A world that is looked at after each step goes on as one that is not.
+// A box of 8 kg that slides on the ground, and a ball that falls beside it.
+std::unique_ptr<World> sliding_and_falling() {
+    auto made = make_world({.substeps = 1});
+    World& world = *made;
+    const auto add = [&world](const ShapeDefinition& shape, Vec3 position, Vec3 velocity, BodyKind kind, int user) {
+        BodyDefinition body;
+        body.kind = kind;
+        body.shape = world.create_shape(shape).value();
+        body.position = position;
+        body.linear_velocity = velocity;
+        body.user_data = static_cast<std::uint64_t>(user);
+        if (user == 2) body.force = {0, 0, 20};
+        EXPECT_TRUE(world.create_body(body).ok());
+    };
+    add(BoxShape{{10, 1, 10}}, {0, -1, 0}, {}, BodyKind::static_body, 1);
+    add(BoxShape{{0.1, 0.1, 0.1}}, {0, 0.1, 0}, {2, 0, 0}, BodyKind::dynamic_body, 2);
+    add(SphereShape{0.1}, {3, 5, 0}, {0, 1, 0}, BodyKind::dynamic_body, 3);
+    world.step();
+    return made;
+}
+
+TEST(DebugDraw, VelocitiesLeadToWhereACentreWillBe) {
+    const auto made = sliding_and_falling();
+    const World& world = *made;
+    const auto arrows = drawn(world, {DebugDrawFlag::velocities}).of(DebugMeaning::velocity);
+    ASSERT_EQ(arrows.size(), 6u);  // a shaft and two lines of a head each
+    for (const BodyHandle body : world.bodies()) {
+        if (world.linear_velocity(body) == Vec3{}) continue;
+        const Vec3 end = world.center_of_mass(body) + 0.2 * world.linear_velocity(body);
+        EXPECT_TRUE(std::ranges::any_of(arrows, [&](const Drawn::Line& line) {
+            return distance(line.from, world.center_of_mass(body)) < 1e-12 && distance(line.to, end) < 1e-12;
+        }));
+    }
+}
+
+TEST(DebugDraw, ForcesAreWeightConstantForceAndContacts) {
+    const auto made = sliding_and_falling();
+    const World& world = *made;
+    DebugDrawOptions options;
+    options.only = {2};
+    std::map<int, std::vector<Drawn::Line>> shafts;
+    const auto lines = drawn(world, {DebugDrawFlag::forces}, options).of(DebugMeaning::force);
+    for (std::size_t i = 0; i < lines.size(); i += 3) shafts[lines[i].color.number].push_back(lines[i]);
+    ASSERT_EQ(shafts[0].size(), 1u);
+    ASSERT_EQ(shafts[1].size(), 1u);
+    const auto along = [](const Drawn::Line& line) { return line.to - line.from; };
+    const Vec3 weight = along(shafts[0].front());
+    EXPECT_LT(std::fabs(weight.x) + std::fabs(weight.z), 1e-12);
+    const double newton = length(weight) / (8 * 9.81);
+    EXPECT_LT(distance(along(shafts[1].front()), {0, 0, 20 * newton}), 1e-9);
+    Vec3 of_contacts;
+    for (const Drawn::Line& line : shafts[2]) of_contacts += along(line);
+    Vec3 expected;
+    for (const ContactView& contact : world.contacts()) expected += contact.impulse * (60 * newton);
+    // Whichever of the two bodies comes first.
+    EXPECT_NEAR(length(of_contacts), length(expected), 1e-6);
+    EXPECT_GT(of_contacts.y, 0);
+    EXPECT_LT(of_contacts.x, 0);
+}
+
+TEST(DebugDraw, OnlyWhatIsMeantIsDrawn) {
+    const auto made = sliding_and_falling();
+    const World& world = *made;
+    const auto flags = {DebugDrawFlag::masses, DebugDrawFlag::velocities, DebugDrawFlag::contacts};
+    DebugDrawOptions options;
+    options.only = {3};
+    const Drawn ball = drawn(world, flags, options);
+    EXPECT_EQ(ball.points.size(), 1u);
+    EXPECT_EQ(ball.of(DebugMeaning::velocity).size(), 3u);
+    EXPECT_TRUE(ball.of(DebugMeaning::contact_normal).empty());
+    options.only = {2};
+    EXPECT_EQ(drawn(world, flags, options).of(DebugMeaning::contact_normal).size(), world.contacts().size());
+    options.only = {7};
+    const Drawn nothing = drawn(world, flags, options);
+    EXPECT_TRUE(nothing.lines.empty() && nothing.points.empty());
+}
+
 TEST(DebugDraw, ChangesNothing) {
     const Stacks seen, unseen;
     for (int i = 0; i < 30; ++i) {
