@@ -137,6 +137,7 @@ void add_actions(Document& document) {
             action.trigger = trigger;
             action.effect = effect;
             action.once = id % 2 == 0;
+            action.enabled = id % 3 != 0;
             document.actions.push_back(action);
         }
 }

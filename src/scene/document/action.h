@@ -158,6 +158,7 @@ struct Action {
     Trigger trigger;
     Effect effect;
     bool once = true;
+    bool enabled = true;
 };
 template <>
 inline constexpr auto fields_of<Action> = std::tuple{
@@ -168,6 +169,7 @@ inline constexpr auto fields_of<Action> = std::tuple{
     always_needed("trigger", &Action::trigger, "what sets the action off"),
     always_needed("effect", &Action::effect, "what the action does"),
     always_saved("once", &Action::once, "at most once a run; of what repeats false where nothing is said"),
+    saved_when_set("enabled", &Action::enabled, "`false`: nothing sets it off"),
 };
 
 }  // namespace embody::scene

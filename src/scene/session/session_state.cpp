@@ -127,7 +127,10 @@ Result<void> SessionState::sync(const Change& change) {
     if (const auto* joint = std::get_if<JointChange>(&change)) {
         if (joint->before && simulation->contains_joint(joint->before->index))
             if (Result<void> removed = simulation->remove_joint(joint->before->index); !removed.ok()) return removed;
-        return joint->after ? simulation->add_joint(*joint->after) : Result<void>{};
+        if (!joint->after) return {};
+        Result<void> added = simulation->add_joint(*joint->after);
+        if (!added.ok() && joint->before) (void)simulation->add_joint(*joint->before).ok();
+        return added;
     }
 
     // A thing that is moved by hand is at rest at its new pose.

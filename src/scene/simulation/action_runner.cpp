@@ -13,7 +13,7 @@ using physics::SleepEvent;
 namespace {
 
 constexpr double clock_error = 5e-10;  // s, half a nanosecond: the clock is a sum of steps
-constexpr double min_period = 1e-5;  // s
+constexpr double min_period = 1e-5;    // s
 
 }  // namespace
 
@@ -121,7 +121,30 @@ void ActionRunner::resume(double time, const std::set<std::uint32_t>& done) {
     }
 }
 
+Result<void> ActionRunner::request(std::uint32_t id, EntityIndex sender) {
+    const auto action = std::ranges::find(actions_, id, &Action::id);
+    if (action == actions_.end()) return Error{"index", "there is no action " + std::to_string(id)};
+    const std::vector<EntityIndex>& entities = world_.entities();
+    if (sender != 0 && std::ranges::find(entities, sender) == entities.end())
+        return Error{"sender", "there is no entity " + std::to_string(sender) + " in the world"};
+    const bool by_nobody =
+        std::holds_alternative<AtTime>(action->trigger) || std::holds_alternative<OnSignal>(action->trigger);
+    if (sender == 0 && !by_nobody && action->receiver.by == Target::By::any) {
+        const auto found =
+            std::ranges::find_if(entities, [&](EntityIndex entity) { return matches(action->sender, entity); });
+        if (action->sender.by == Target::By::any || found == entities.end())
+            return Error{"sender", "the action changes who sets it off, and nobody does now", "name an entity"};
+        sender = *found;
+    }
+    requests_.emplace_back(id, sender);
+    return {};
+}
+
 void ActionRunner::before_step(double time) {
+    for (const auto& [id, sender] : std::exchange(requests_, {})) {
+        const auto action = std::ranges::find(actions_, id, &Action::id);
+        if (action != actions_.end()) run(*action, sender, 0);
+    }
     const auto signals = std::exchange(signals_, {});
     for (const Action& action : actions_) {
         if (const auto* at = std::get_if<AtTime>(&action.trigger)) {

@@ -39,6 +39,9 @@ public:
     /// Carries out actions that the step triggered. The events are copies of the world's: effects change it.
     void after_step(const std::vector<physics::ContactEvent>& contacts, const std::vector<physics::SleepEvent>& sleeps);
     std::size_t signal(const std::string& key, const std::string& button);
+    /// Carries out the action at the next step, as `sender` does it; 0: an entity that its sender names, if it needs
+    /// one.
+    Result<void> request(std::uint32_t id, EntityIndex sender);
     void set_actions(std::vector<Action> actions);
     /// For a run that goes on at this time: what was due by the clock is done, and so are the actions of these ids.
     void resume(double time, const std::set<std::uint32_t>& done);
@@ -61,12 +64,16 @@ private:
     void run_contacts(const Action& action, const Target& other, physics::ContactEvent::Kind kind, double min_speed,
                       const std::vector<physics::ContactEvent>& contacts);
     void run_volume(const Action& action, const OnEnterVolume& enter);
-    [[nodiscard]] bool is_done(const Action& action) { return action.once && progress_[action.id].has_fired; }
+    /// Whether nothing sets it off any more.
+    [[nodiscard]] bool is_done(const Action& action) {
+        return !action.enabled || (action.once && progress_[action.id].has_fired);
+    }
 
     std::vector<Action> actions_;  ///< ascending id
     World world_;
     std::map<std::uint32_t, Progress> progress_;
     std::vector<std::pair<std::string, std::string>> signals_;
+    std::vector<std::pair<std::uint32_t, EntityIndex>> requests_;
 };
 
 }  // namespace embody::scene

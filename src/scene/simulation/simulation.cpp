@@ -123,6 +123,10 @@ std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { retur
 const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
 const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
 
+Result<void> Simulation::run_action(std::uint32_t action, EntityIndex sender) {
+    return state_->actions->request(action, sender);
+}
+
 std::size_t Simulation::signal(const std::string& key, const std::string& button) {
     return state_->actions->signal(key, button);
 }

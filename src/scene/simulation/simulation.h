@@ -70,6 +70,9 @@ public:
     [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
     /// A key or button (OnSignal); returns the number of actions it starts at the next step.
     std::size_t signal(const std::string& key, const std::string& button);
+    /// Carries out an action at the next step, whatever sets it off, as `sender` does it; 0: an entity that the
+    /// action's own sender names. An error where that is not known but needed.
+    Result<void> run_action(std::uint32_t action, EntityIndex sender);
 
     [[nodiscard]] physics::World& world();
     [[nodiscard]] const physics::World& world() const;

@@ -343,6 +343,8 @@ export interface Action {
   effect: Effect;
   /** at most once a run; of what repeats false where nothing is said */
   once?: boolean;
+  /** `false`: nothing sets it off */
+  enabled?: boolean;
 }
 
 /** Settings of a scene that sets none. */
