@@ -13,6 +13,8 @@ namespace embody::attributes {
 struct Issue {
     std::string attribute;
     std::string why;
+    std::string remedy = {};  ///< what to do; empty: change or reset one of the values
+    std::string reset = {};   ///< attribute whose own value is to be taken back; empty: that alone would not help
 };
 
 /// Checks rules that hold between attributes: every value in its range and interval, nothing missing, mass = density ×

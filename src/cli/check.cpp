@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -27,12 +28,18 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
     Checked checked{document->entities.size(), (*simulation)->notes(), {}};
     scene::EntityDefinitions definitions(catalog);
     for (std::size_t i = 0; i < document->entities.size(); ++i) {
-        const auto found = definitions.attributes.contradictions(document->entities[i]);
+        const scene::EntityIndex index = document->entities[i].index;
+        const bool has_joint = std::ranges::any_of(document->joints, [index](const auto& joint) {
+            return joint.entity_a == index || joint.entity_b == index;
+        });
+        const auto found = definitions.attributes.contradictions(
+            document->entities[i], scene::circumstances_of(document->settings, has_joint));
         if (!found) return scene::in_place(file.string(), found.error());
         const std::string where = file.string() + ": entities[" + std::to_string(i) + "].attributes.";
         for (const attributes::Issue& issue : *found) {
             checked.contradictions.push_back(
-                {where + issue.attribute, issue.why, "change or reset one of these values"});
+                {where + issue.attribute, issue.why,
+                 issue.remedy.empty() ? "change or reset one of these values" : issue.remedy});
         }
     }
     return checked;

@@ -11,6 +11,7 @@
 #include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
+#include "physics/definitions/shape_bounds.h"
 
 namespace embody::scene {
 
@@ -217,26 +218,50 @@ bool EntityAttributes::is_liquid(const Entity& entity) {
     return automatic.ok() && matter_of(automatic.value()) == Matter::liquid;
 }
 
-Result<std::vector<attributes::Issue>> EntityAttributes::contradictions(const Entity& entity) {
+attributes::Circumstances circumstances_of(const physics::WorldSettings& settings, bool has_joint) {
+    return {{}, settings.time_step / settings.substeps, length(settings.gravity), has_joint};
+}
+
+Bounds EntityAttributes::box_of(const Entity& entity) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) return physics::bounds_of(*shape);
+    const Result<const KnownModel*> model = models_.find(std::get<ModelReference>(entity.geometry).key);
+    const Vec3 size = model.ok() ? entity.scale * model.value()->facts.geometry.size : Vec3{};
+    if (!is_finite(size) || size == Vec3{}) return {};
+    return {{-size.x / 2, 0, -size.z / 2}, {size.x / 2, size.y, size.z / 2}};
+}
+
+Result<std::vector<attributes::Issue>> EntityAttributes::contradictions(const Entity& entity,
+                                                                        attributes::Circumstances around) {
     const Result<SharedAttributes> shared = this->shared(entity);
     if (!shared.ok()) return shared.error();
     const AttributeSet& acting = *shared.value();
     const bool is_changed = std::ranges::any_of(
         acting.entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
-    // Without manual entries the set is as it was resolved. The physics knows the form of a primitive itself.
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    // Without manual entries the set is as it was resolved.
     std::vector<attributes::Issue> issues;
     if (!is_changed) return issues;
-    if (model) {
+    const Result<AttributeSet> automatic = this->automatic(entity);
+    if (!automatic.ok()) return automatic.error();
+    around.box = box_of(entity);
+    issues = attributes::find_implausible(acting, automatic.value(), around);
+
+    // The physics knows the form of a primitive itself.
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
         ModelFacts facts = models_.find(model->key).value()->facts;
         facts.geometry = attributes::scaled(facts.geometry, entity.scale);
-        issues = attributes::check(acting, facts);
+        for (attributes::Issue& issue : attributes::check(acting, facts)) {
+            const bool is_told = std::ranges::any_of(
+                issues, [&issue](const attributes::Issue& told) { return told.attribute == issue.attribute; });
+            if (!is_told) issues.push_back(std::move(issue));
+        }
     }
     const AttributeEntry* material = acting.find("surface_material");
     if (material && models_.taxonomy() && attributes::is_manual(acting, "surface_material")) {
         const auto known = attributes::known_value(*models_.taxonomy(), material->name, material->value);
         if (!known) issues.push_back({material->name, known.error().why});
     }
+    for (attributes::Issue& issue : issues)
+        if (entity.attributes.contains(issue.attribute)) attributes::offer_reset(issue, automatic.value());
     return issues;
 }
 

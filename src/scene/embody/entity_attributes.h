@@ -8,6 +8,7 @@
 
 #include "attributes/attribute.h"
 #include "attributes/check.h"
+#include "attributes/plausible.h"
 #include "foundation/result.h"
 #include "scene/document/document.h"
 #include "scene/embody/known_models.h"
@@ -30,8 +31,9 @@ public:
     Result<SharedAttributes> shared(const Entity& entity);
     /// The attributes without the entity's own.
     Result<attributes::AttributeSet> automatic(const Entity& entity);
-    /// Contradictions between the attributes in effect: a person can set impossible values.
-    Result<std::vector<attributes::Issue>> contradictions(const Entity& entity);
+    /// Contradictions between the attributes in effect, and values that no real thing has: a person can set such. Each
+    /// has a remedy. `around` says what else decides; its box is found here.
+    Result<std::vector<attributes::Issue>> contradictions(const Entity& entity, attributes::Circumstances around = {});
     /// Whether its kind is fluid; false where the model is unknown.
     bool is_liquid(const Entity& entity);
 
@@ -47,11 +49,16 @@ private:
                                                                 const physics::ShapeDefinition& shape,
                                                                 const attributes::ModelFacts& facts) const;
     const attributes::ModelFacts& facts_of(const Entity& entity, const physics::ShapeDefinition& shape);
+    /// The box of the entity's form in its own frame; empty where it has no end.
+    Bounds box_of(const Entity& entity);
 
     KnownModels& models_;
     PrimitiveFacts primitives_;
     std::map<GeometryKey, SharedAttributes> sets_;  ///< by everything that they follow from
 };
+
+/// What decides in a scene with these settings whether an entity's values make sense.
+attributes::Circumstances circumstances_of(const physics::WorldSettings& settings, bool has_joint);
 
 /// The value for the model itself of an attribute of an entity that is drawn at `scale`.
 attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,

@@ -22,10 +22,10 @@ namespace {
 const std::map<std::string, const Command*>& command_table() {
     static const std::map<std::string, const Command*> table = [] {
         std::map<std::string, const Command*> built;
-        for (const auto family :
-             {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(), entity_commands(),
-              placement_commands(), room_commands(), arrange_commands(), group_commands(), part_commands(),
-              attribute_commands(), joint_and_action_commands(), simulation_commands(), time_commands()})
+        for (const auto family : {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(),
+                                  entity_commands(), placement_commands(), room_commands(), arrange_commands(),
+                                  group_commands(), part_commands(), attribute_commands(), value_commands(),
+                                  joint_and_action_commands(), simulation_commands(), time_commands()})
             for (const Command& command : family) built[command.name] = &command;
         return built;
     }();

@@ -54,7 +54,7 @@ TEST_F(RightsTest, WhoMayLookChangesNothingByAnyCommand) {
     for (const auto family :
          {catalog_commands(), catalog_change_commands(), scene_commands(), people_commands(), entity_commands(),
           placement_commands(), room_commands(), arrange_commands(), group_commands(), part_commands(),
-          attribute_commands(), joint_and_action_commands(), simulation_commands(), time_commands()})
+          attribute_commands(), value_commands(), joint_and_action_commands(), simulation_commands(), time_commands()})
         for (const Command& command : family) {
             const Result<json> done = attempt(guest, command.name);
             const bool is_right = !done.ok() && done.error().why.starts_with("is not allowed");

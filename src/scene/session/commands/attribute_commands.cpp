@@ -19,7 +19,8 @@ using attributes::AttributeEntry;
 using attributes::AttributeSet;
 using nlohmann::json;
 
-json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, const std::vector<std::string>& own) {
+json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, const std::vector<std::string>& own,
+                    const std::vector<attributes::Issue>& issues) {
     constexpr std::array type_names{"number", "word", "truth", "vector", "tensor"};
     json rows = json::array();
     for (const AttributeEntry& entry : acting.entries()) {
@@ -42,6 +43,9 @@ json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, c
         const AttributeEntry* before = automatic.find(entry.name);
         row["automatic"] = before ? attributes::to_json(before->value) : json(nullptr);
         row["overridden"] = std::find(own.begin(), own.end(), entry.name) != own.end();
+        row["warnings"] = json::array();
+        for (const attributes::Issue& issue : issues)
+            if (issue.attribute == entry.name) row["warnings"].push_back(warning_json(issue));
         rows.push_back(std::move(row));
     }
     return rows;
@@ -172,7 +176,9 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     if (!automatic.ok()) return automatic.error();
     std::vector<std::string> own;
     for (const auto& [name, value] : entity->attributes) own.push_back(name);
-    json rows = attribute_rows(acting, automatic.value(), own);
+    const Result<std::vector<attributes::Issue>> issues = issues_of(state, *entity);
+    if (!issues.ok()) return issues.error();
+    json rows = attribute_rows(acting, automatic.value(), own, issues.value());
     if (std::holds_alternative<ModelReference>(entity->geometry)) {
         for (json& row : rows) {
             const std::string name = row["name"];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
+#include "attributes/assemble.h"
+#include "attributes/plausible.h"
 #include "scene/file/json/parts.h"
 #include "scene/session/commands/commands.h"
 #include "scene/session/model_json.h"
@@ -25,7 +27,10 @@ Result<json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t 
     std::vector<std::string> own;
     for (const attributes::AttributeEntry& entry : acting.value().entries())
         if (entry.level == attributes::AttributeLevel::manual) own.push_back(entry.name);
-    return attribute_rows(acting.value(), automatic.value(), own);
+    std::vector<attributes::Issue> issues = attributes::find_implausible(acting.value(), automatic.value(), {});
+    for (attributes::Issue& issue : issues)
+        if (attributes::is_manual(acting.value(), issue.attribute)) attributes::offer_reset(issue, automatic.value());
+    return attribute_rows(acting.value(), automatic.value(), own, issues);
 }
 
 namespace {

@@ -34,6 +34,7 @@ std::span<const Command> arrange_commands();
 std::span<const Command> group_commands();
 std::span<const Command> part_commands();
 std::span<const Command> attribute_commands();
+std::span<const Command> value_commands();
 std::span<const Command> joint_and_action_commands();
 std::span<const Command> simulation_commands();
 std::span<const Command> time_commands();
@@ -50,7 +51,11 @@ Result<nlohmann::json> done(const Result<void>& result);
 
 /// The rows of the properties panel: the protocol's AttributeEntry. `own` tells whether a name is overridden.
 nlohmann::json attribute_rows(const attributes::AttributeSet& acting, const attributes::AttributeSet& automatic,
-                              const std::vector<std::string>& own);
+                              const std::vector<std::string>& own, const std::vector<attributes::Issue>& issues);
+/// What makes no sense of an entity's values, in its scene.
+Result<std::vector<attributes::Issue>> issues_of(SessionState& state, const Entity& entity);
+/// {why, remedy, reset}
+nlohmann::json warning_json(const attributes::Issue& issue);
 
 /// The model database that is open, or an error that says how to open one.
 Result<catalog::Catalog*> open_catalog(const SessionState& state);
