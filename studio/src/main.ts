@@ -5,6 +5,9 @@ import "./style/panels.css";
 import "./style/build.css";
 import "./style/narrow.css";
 import "./style/time.css";
+import "./style/values.css";
+import { ActionList } from "./panels/action_list";
+import { ArrayCard } from "./panels/array_card";
 import { ArrangeBar } from "./panels/arrange_bar";
 import { AttributeList } from "./panels/attribute_list";
 import { BuildBar, buildActions } from "./panels/build_bar";
@@ -17,6 +20,7 @@ import { openHelp } from "./panels/help";
 import { openHistory } from "./panels/history";
 import { HeadsetButtons } from "./panels/headset_buttons";
 import { Hierarchy } from "./panels/hierarchy";
+import { JointFields } from "./panels/joint_fields";
 import { Layout } from "./panels/layout";
 import { LevelBar, planActions } from "./panels/level_bar";
 import { LibraryProgress } from "./panels/library_progress";
@@ -31,10 +35,13 @@ import { PinFields } from "./panels/pin_fields";
 import { offerRecoveries } from "./panels/recovery";
 import { newScene, openRecovery, openScenes, openVersions, saveAs, saveScene, saveVersion } from "./panels/scene_dialogs";
 import { SceneFields } from "./panels/scene_fields";
+import { SelectionOverlays } from "./panels/selection_overlays";
 import { StatusBar } from "./panels/status_bar";
 import { Toasts } from "./panels/toasts";
 import { Toolbar } from "./panels/toolbar";
 import { Tour } from "./panels/tour";
+import { ValueSearch } from "./panels/value_search";
+import { ValueTools } from "./panels/value_tools";
 import { Studio } from "./studio";
 import { offerTestHook } from "./test_hook";
 import { timeActions } from "./time/time_actions";
@@ -43,6 +50,7 @@ import { BuildTool } from "./tools/build_tool";
 import { Measures } from "./tools/measures";
 import { keepPoses, makeActions, type UserAction } from "./tools/actions";
 import { Gizmo } from "./tools/gizmo";
+import { JointTool } from "./tools/joint_tool";
 import { Keyboard } from "./tools/keys";
 import { Pointer } from "./tools/pointer";
 import { ContactSounds } from "./tools/contact_sounds";
@@ -76,7 +84,7 @@ function start(): void {
   const actions: UserAction[] = makeActions(studio, gizmo, pointer, {
     scenes: () => void openScenes(studio),
     save: () => void saveScene(studio),
-    saveAs: () => saveAs(studio),
+    saveAs: () => void saveAs(studio),
     saveVersion: () => saveVersion(studio),
     versions: () => void openVersions(studio),
     newScene: () => void newScene(studio),
@@ -88,6 +96,9 @@ function start(): void {
       browser.focusSearch();
     },
   });
+  const array = new ArrayCard(studio);
+  scene.append(array.root);
+  actions.push({ id: "arrange.array", label: "Copies in rows…", group: "Arrange", keys: ["Ctrl+Shift+D"], icon: "copy", possible: () => studio.selection.indices.length > 0, run: () => array.open() });
   actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
   const building = buildActions(build);
@@ -100,9 +111,22 @@ function start(): void {
   studio.connection.frame.on(() => timeline.tick());
   const entityFields = new EntityFields(studio);
   const attributes = new AttributeList(studio);
-  show(entityFields.root, false);
-  show(attributes.root, false);
-  const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root);
+  const joints = new JointTool(studio, gizmo);
+  const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" });
+  right.append(
+    new ValueSearch(studio, right).root,
+    new SceneFields(studio).root,
+    new ModelFields(studio).root,
+    entityFields.head,
+    attributes.essentials,
+    new ValueTools(studio).root,
+    new SelectionOverlays(studio).root,
+    entityFields.root,
+    new PinFields(studio).root,
+    attributes.root,
+    new JointFields(studio, joints).root,
+    new ActionList(studio).root,
+  );
   app.append(toolbar.root, left.root, right, timeline.plots.root, new StatusBar(studio).root);
   const layout = new Layout(studio, app, scene, { left: left.root, right });
   actions.push(...layout.actions);
@@ -133,7 +157,7 @@ function start(): void {
     if (event.event === "impacts") sounds.take(event.impacts);
     else if (event.event === "hand" && headset.isRunning) headset.interaction.shake(event.hand, event.impulse);
   });
-  offerTestHook(studio, headset, sounds, timeline);
+  offerTestHook(studio, headset, sounds, timeline, joints);
   studio.connection.open();
 }
 

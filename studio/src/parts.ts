@@ -10,6 +10,7 @@ import type { Playback } from "./document/playback";
 import type { Take } from "./document/take";
 import type { SceneDocument } from "./document/scene_document";
 import type { Selection } from "./document/selection";
+import type { Warnings } from "./document/warnings";
 import type { Preferences } from "./preferences";
 import type { EntityView } from "./view/entity_view";
 import type { Framing } from "./view/framing";
@@ -35,6 +36,7 @@ export interface Parts {
   readonly picked: PickedModel;
   readonly people: People;
   readonly opening: Opening;
+  readonly warnings: Warnings;
   found: Found;
   readonly motion: Motion;
   readonly models: ModelStore;

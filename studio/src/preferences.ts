@@ -20,6 +20,12 @@ export interface PreferenceValues {
   collision: boolean;
   /** Debug drawings of the solver that are shown over the picture. */
   debug: readonly DebugName[];
+  /** Debug drawings of what is selected. */
+  overlays: readonly DebugName[];
+  /** Groups of the panels that the user opened or folded. */
+  folds: Record<string, boolean>;
+  /** How strongly the mouse pulls, N. */
+  pull: number;
   snap: boolean;
   /** Metres and degrees. */
   snapLength: number;
@@ -56,6 +62,9 @@ const DEFAULTS: PreferenceValues = {
   grid: true,
   collision: false,
   debug: [],
+  overlays: [],
+  folds: {},
+  pull: 400,
   snap: false,
   snapLength: 0.1,
   snapAngle: 15,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Connection } from "./connection/connection";
+import type { DebugName } from "./connection/debug_frame";
 import type { CatalogEvent, DocumentEvent, Hello, Recovery, ServerEvent, Simulation, Statistics } from "./connection/messages";
 import { Notices } from "./connection/notices";
 import type { Shape } from "./connection/scene_types";
@@ -14,6 +15,7 @@ import { SceneDocument } from "./document/scene_document";
 import { setBlendRate } from "./document/blend";
 import { Selection } from "./document/selection";
 import { Take } from "./document/take";
+import { Warnings } from "./document/warnings";
 import type { Found, Parts } from "./parts";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
@@ -43,6 +45,7 @@ export class Studio implements Parts {
   readonly picked = new PickedModel();
   readonly people = new People();
   readonly opening = new Opening();
+  readonly warnings = new Warnings(this.server, this.document);
   found: Found = { models: { all: true }, text: "all models" };
   readonly motion = new Motion();
   readonly models = new ModelStore(this.connection);
@@ -101,6 +104,7 @@ export class Studio implements Parts {
       if (this.selection.indices.length > 0) this.picked.set(null);
       this.view.outline.show(this.selection.indices);
       void this.showCollision();
+      if (this.preferences.get("overlays").length > 0) void this.askDebug();
       this.view.invalidate();
     });
     this.entities.loaded.on(() => this.view.outline.show(this.selection.indices));
@@ -134,9 +138,17 @@ export class Studio implements Parts {
 
   /** Tells the server which debug drawings are wanted; their frames follow. */
   private async askDebug(): Promise<void> {
-    const show = this.preferences.get("debug");
+    const { show, of } = this.debugWish();
     if (show.length === 0) this.view.debug.show(null);
-    await this.server.command("debug.draw", { show });
+    await this.server.command("debug.draw", of ? { show, of } : { show });
+  }
+
+  /** What is drawn for all things, else what is drawn of the selection. */
+  private debugWish(): { show: readonly DebugName[]; of?: number[] } {
+    const { debug, overlays } = { debug: this.preferences.get("debug"), overlays: this.preferences.get("overlays") };
+    const of = [...this.selection.indices];
+    if (of.length === 0) return { show: debug };
+    return debug.length > 0 ? { show: [...new Set([...debug, ...overlays])] } : { show: overlays, of };
   }
 
   private followConnection(): void {
@@ -156,7 +168,7 @@ export class Studio implements Parts {
     this.connection.event.on((event) => this.receive(event));
     this.connection.debug.on((frame) => {
       // A frame may still arrive after debug drawing was turned off.
-      this.view.debug.show(this.preferences.get("debug").length > 0 ? frame : null);
+      this.view.debug.show(this.debugWish().show.length > 0 ? frame : null);
       this.view.drawSoon();
       this.connection.wantFrame();
     });
@@ -187,7 +199,7 @@ export class Studio implements Parts {
       if (name === "grid") view.environment.showGrid(preferences.get("grid"));
       if (name === "tint" || name === "fullTint") this.retint();
       if (name === "collision") void this.showCollision();
-      if (name === "debug") void this.askDebug();
+      if (name === "debug" || name === "overlays") void this.askDebug();
       if (name === "userName") void this.tellName();
       view.invalidate();
     });
@@ -199,7 +211,7 @@ export class Studio implements Parts {
     if (!hello) return;
     this.server.meet(hello);
     if (this.preferences.get("userName")) void this.tellName();
-    if (this.preferences.get("debug").length > 0) void this.askDebug();
+    if (this.debugWish().show.length > 0) void this.askDebug();
     this.playback.simulation = hello.simulation;
     setBlendRate(hello.simulation.rate ?? 1);
     if (hello.take) this.take.take(hello.take);

@@ -6,6 +6,7 @@ import type { Studio } from "./studio";
 import type { ContactSounds, Heard } from "./tools/contact_sounds";
 import type { Curve, TakeState, TimeMark } from "./connection/messages";
 import type { Timeline } from "./time/timeline";
+import type { JointTool } from "./tools/joint_tool";
 import { presentPoses } from "./tools/poses";
 import type { VrSession } from "./vr/session";
 import { type VrHook, vrHook } from "./vr/test_view";
@@ -44,6 +45,10 @@ export interface TestHook {
   collisionParts(): number;
   /** Lines and points of each meaning (docs/protocol.md, "Debug frames") that are drawn. */
   debugCounts(): Record<number, { lines: number; points: number }>;
+  /** Number of joints that are drawn over the picture. */
+  joints(): number;
+  /** Whether the pointer is over a handle that turns the axis of a joint. */
+  jointHandle(): boolean;
   pick(x: number, y: number): number | null;
   /** Where the camera is and what it looks at. */
   camera(): { position: number[]; target: number[] };
@@ -74,7 +79,7 @@ function memoryInUse(): number {
   return (performance as unknown as { memory?: { usedJSHeapSize: number } }).memory?.usedJSHeapSize ?? 0;
 }
 
-export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds, timeline: Timeline): void {
+export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds, timeline: Timeline, joints: JointTool): void {
   const hook: TestHook = {
     connected: () => studio.server.isOpen && studio.server.ready,
     simulation: () => studio.playback.simulation,
@@ -138,6 +143,8 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     pinned: () => studio.view.pins.count,
     collisionParts: () => studio.view.collision.parts,
     debugCounts: () => studio.view.debug.counts,
+    joints: () => joints.count,
+    jointHandle: () => joints.isBusy,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     camera: () => studio.view.rig.seen(),
     filled: () => {

@@ -70,6 +70,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
   it("shows unit, interval, source, level and reset of a model's values, as of an entity's", async () => {
     await pick();
     const shown = async () => {
+      if ((await page.getByTestId("why-mass").getAttribute("aria-expanded")) === "false") await page.getByTestId("why-mass").click();
       const text = await row("mass").innerText();
       assert.match(text, /kg/, "unit");
       assert.match(text, /\d … \d/, "interval");

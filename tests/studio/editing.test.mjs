@@ -97,7 +97,8 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
   it("changes one component of the centre of mass of each", async () => {
     await session.command("entity.set_attribute", { indices: [2], name: "center_of_mass", value: [0.05, 0, 0.01] });
     await choose(...THREE);
-    await page.getByTestId("attribute-center_of_mass").waitFor();
+    await page.getByTestId("attribute-center_of_mass").waitFor({ state: "attached" });
+    await page.evaluate(() => document.querySelectorAll("details").forEach((each) => (each.open = true)));
     await page.waitForFunction(() => document.querySelector("[data-testid=attribute-center_of_mass] input").placeholder === "differs");
     await type("Centre of mass y", "0.02");
     const all = three(await until((each) => three(each).every(({ attributes }) => attributes?.center_of_mass?.[1] === 0.02), "y of all centres"));
@@ -143,7 +144,7 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
     const expected = { static: 15, rigid: 20, soft: 15, cloth: 15, rope: 15, granular: 15, fluid: 15, chair: 20, capsule: 20, cone: 20, plane: 8 };
     for (const { index, name = "chair" } of [...made, ...primitives, ...ROOM.entities.slice(1).map((each) => ({ ...each, name: "rigid" })), { index: 30 }]) {
       await choose(index);
-      await page.waitForFunction(([index, least]) => window.embody.selection()[0] === index && document.querySelectorAll("[data-testid=attributes] .attribute").length >= least, [index, expected[name]]);
+      await page.waitForFunction(([index, least]) => window.embody.selection()[0] === index && document.querySelectorAll(":is([data-testid=essentials], [data-testid=attributes]) .attribute").length >= least, [index, expected[name]]);
       await page.evaluate(() => document.querySelectorAll("details").forEach((each) => (each.open = true)));
       const unreadable = await page.evaluate(() =>
         [...document.querySelectorAll("[data-testid=properties] input:not([type=checkbox], [type=color])")]

@@ -58,8 +58,8 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     await page.mouse.click(seen.x, seen.y);
     assert.deepEqual(await page.evaluate(() => window.embody.selection()), [WATER]);
     const row = page.locator("[data-testid=attribute-fluid_cell_size]").first();
-    await row.waitFor();
-    assert.match(await row.innerText(), /particles, eight in a cell/);
+    await row.waitFor({ state: "attached" });
+    assert.match(await row.locator(".source").textContent(), /particles, eight in a cell/);
     assert.deepEqual(page.faults, []);
   });
 

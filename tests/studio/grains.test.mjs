@@ -68,8 +68,8 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     const seen = await page.evaluate((sand) => window.embody.seenAt(sand), SAND);
     await page.mouse.click(seen.x, seen.y);
     assert.deepEqual(await page.evaluate(() => window.embody.selection()), [SAND]);
-    await page.locator("[data-testid=attribute-simulated_diameter]").first().waitFor();
-    const said = await page.locator("[data-testid=attribute-simulated_diameter]").first().innerText();
+    await page.locator("[data-testid=attribute-simulated_diameter]").first().waitFor({ state: "attached" });
+    const said = await page.locator("[data-testid=attribute-simulated_diameter] .source").first().textContent();
     assert.match(said, /stands for/);
     assert.deepEqual(page.faults, []);
   });
@@ -96,7 +96,7 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => window.embody.points(3)?.count > 100);
     const kind = page.locator("[data-testid=attribute-kind] select").first();
     assert.equal(await kind.inputValue(), "granular");
-    assert.match(await page.locator("[data-testid=attribute-friction_angle]").first().innerText(), /sand/i);
+    assert.match(await page.locator("[data-testid=attribute-friction_angle] .source").first().textContent(), /sand/i);
     assert.deepEqual(page.faults, []);
   });
 });

@@ -113,6 +113,7 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     const automatic = await field("mass").inputValue();
     assert.ok(Number(automatic) > 0.2 && Number(automatic) < 100, `${automatic} kg`);
     assert.match(await row.innerText(), /kg/);
+    await page.getByTestId("why-mass").click();
     assert.ok((await row.locator(".source").innerText()).length > 10, "says where the value is from");
     for (const part of [0, 1, 2]) {
       const moment = await page.locator("[data-testid=attribute-inertia] input").nth(part).inputValue();

@@ -9,7 +9,7 @@ const LINE_FLOATS = 6;
 const POINT_FLOATS = 3;
 
 /** What debug.draw can show, in the order of the protocol. */
-export const DEBUG_NAMES = ["shapes", "bounds", "contacts", "impulses", "islands", "joints", "masses", "particles", "deformables", "trees"] as const;
+export const DEBUG_NAMES = ["shapes", "bounds", "contacts", "impulses", "islands", "joints", "masses", "particles", "deformables", "trees", "velocities", "forces"] as const;
 export type DebugName = (typeof DEBUG_NAMES)[number];
 
 /** Lines and points of the same meaning. */

@@ -45,9 +45,32 @@ export interface AttributeEntry {
   range: [number | null, number | null] | null;
   automatic: AttributeValue | null;
   overridden: boolean;
+  /** Why the value makes no sense. */
+  warnings: ValueWarning[];
   /** Of an entity with a model: the value without the entity's scale. */
   of_model?: AttributeValue;
 }
+
+/** A value that contradicts others, or that no real thing has. */
+export interface ValueWarning {
+  why: string;
+  remedy: string;
+  /** The attribute whose automatic value mends it. */
+  reset: string | null;
+}
+
+/** A material that whole things are made of, and what follows from it. */
+export interface MaterialPreset {
+  preset: string;
+  label: string;
+  source: string;
+  values: { name: string; label: string; unit: string; value: number; low: number | null; high: number | null }[];
+}
+
+/** Joints and actions without their numbers, and changes of them; null: the format's default. */
+export type JointEdit = { [Field in "name" | "type" | "entity_a" | "entity_b" | "bodies_collide" | "limit" | "motor"]?: unknown } & { anchor?: Vector; axis?: Vector };
+export type NewAction = Omit<Action, "id">;
+export type ActionEdit = { [Field in keyof NewAction]?: NewAction[Field] | null };
 
 /** The models that a change is for. */
 export type ModelChoice = { keys: string[] } | { words?: string; category?: string } | { all: true };
@@ -368,6 +391,10 @@ export interface Commands {
   "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
   "entity.drop_to_floor": [{ indices: number[] }, unknown];
   "entity.attributes": [{ index: number }, { attributes: AttributeEntry[] }];
+  "entity.warnings": [{ indices?: number[] }, { entities: { index: number; warnings: (ValueWarning & { attribute: string; label: string })[] }[] }];
+  "entity.presets": [Record<string, never>, { presets: MaterialPreset[] }];
+  "entity.apply_preset": [{ indices: number[]; preset: string }, unknown];
+  "entity.copy_attributes": [{ from: number; indices: number[]; names?: string[] }, { copied: number; skipped: { index: number; name: string; label: string }[] }];
   "entity.collision_shape": [{ index: number }, { shape: Shape | null }];
   "entity.simulation_mesh": [{ index: number }, { mesh: SimulationMesh | null }];
   "edit.undo": [Record<string, never>, { undone: string | null }];
@@ -388,7 +415,15 @@ export interface Commands {
   "time.marks": [Record<string, never>, { marks: TimeMark[]; revision: number }];
   "time.curves": [{ curves: { index: number; quantity: Quantity }[]; from?: number; to?: number; samples?: number }, { times: number[]; curves: Curve[] }];
   "time.frame": [{ time?: number }, { frame: string; spawned: Entity[] }];
-  "debug.draw": [{ show: readonly DebugName[] }, unknown];
+  "joint.add": [JointEdit, { index: number }];
+  "joint.update": [{ index: number; joint: JointEdit }, unknown];
+  "joint.remove": [{ index: number }, unknown];
+  "action.add": [NewAction, { index: number }];
+  "action.update": [{ index: number; action: ActionEdit }, unknown];
+  "action.move": [{ index: number; place: number }, { index: number }];
+  "action.remove": [{ index: number }, unknown];
+  "action.run": [{ index: number; sender?: number }, unknown];
+  "debug.draw": [{ show: readonly DebugName[]; of?: number[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];
 }
 

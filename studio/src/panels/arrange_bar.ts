@@ -10,7 +10,7 @@ const GROUPS = [
   ["arrange.align.y.low", "arrange.align.y.high"],
   ["arrange.distribute.x", "arrange.distribute.z"],
   ["arrange.mirror.x", "arrange.mirror.z"],
-  ["arrange.group", "arrange.ungroup"],
+  ["arrange.array", "arrange.group", "arrange.ungroup"],
 ];
 
 /** A small bar over the picture while several things are selected. */

@@ -7,11 +7,21 @@ import { type AttributeEdits, AttributeRow, type SharedAttribute } from "./attri
 import { type AttributeSubject, CatalogueModel, SelectedEntities } from "./attribute_subject";
 import { openApply } from "./apply_dialog";
 import { element, setText, show } from "./element";
+import type { Change } from "./fields";
+import { foldingGroup } from "./folding";
 
 const REFRESH_DELAY_MS = 60;
 
-/** The physical attributes of what is selected, or of the model picked in the catalogue, grouped by kind. */
+/** The few values that matter first, of whatever kind a thing is; in this order. */
+const ESSENTIALS = [
+  "category", "kind", "surface_material", "mass", "friction_static", "friction_dynamic", "restitution",
+  "youngs_modulus", "stretch_stiffness", "break_tension", "dynamic_viscosity", "rest_density", "grain_diameter",
+];
+
+/** The physical attributes of what is selected, or of the model picked in the catalogue: first what matters, then all others grouped by kind and folded. */
 export class AttributeList implements AttributeEdits {
+  /** What stands first, and the groups, which are folded at first. */
+  readonly essentials = element("section", { class: "attributes essentials", "data-testid": "essentials", "aria-label": "What matters most" });
   readonly root = element("section", { class: "attributes", "data-testid": "attributes", "aria-label": "Physical attributes" });
   private readonly note = element("p", { class: "note" });
   private readonly groups = element("div", {});
@@ -19,11 +29,10 @@ export class AttributeList implements AttributeEdits {
   private shape = "";
   private timer = 0;
   private generation = 0;
-  /** Groups that are closed at first; few people look for the last one. */
-  private readonly closed = new Set(["motion"]);
+  private readonly groupOf = new Map<string, HTMLElement>();
 
-  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "found" | "models">) {
-    this.root.append(this.note, this.groups);
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "found" | "models" | "warnings">) {
+    this.root.append(this.groups);
     parts.selection.changed.on(() => this.refresh());
     parts.picked.changed.on(() => this.refresh());
     parts.document.changed.on(({ all, entities }) => {
@@ -31,10 +40,16 @@ export class AttributeList implements AttributeEdits {
     });
     parts.playback.changed.on(() => this.refreshSoon());
     parts.server.catalogChanged.on(() => this.refreshSoon());
+    parts.warnings.changed.on(() => this.refreshSoon());
+    for (const root of [this.essentials, this.root]) show(root, false);
   }
 
   set(name: string, value: AttributeEdit): Promise<string | null> {
     return this.edit((subject) => subject.set(name, value));
+  }
+
+  change(name: string, change: Change): Promise<string | null> {
+    return this.edit((subject) => subject.change(name, change));
   }
 
   reset(name: string): Promise<string | null> {
@@ -74,7 +89,7 @@ export class AttributeList implements AttributeEdits {
   private async refresh(): Promise<void> {
     const generation = ++this.generation;
     const subject = this.subject();
-    show(this.root, subject !== null);
+    for (const root of [this.essentials, this.root]) show(root, subject !== null);
     if (!subject || !this.parts.server.isOpen) return;
     const { sets, note } = await subject.load();
     if (generation !== this.generation) return;
@@ -92,29 +107,26 @@ export class AttributeList implements AttributeEdits {
       this.build(shared, canApply);
     }
     for (const each of shared) this.rows.get(each.entry.name)?.show(each);
+    for (const [kind, group] of this.groupOf) {
+      const warned = shared.filter(({ entry, warnings }) => entry.kind === kind && warnings.length > 0 && !ESSENTIALS.includes(entry.name));
+      group.classList.toggle("warned", warned.length > 0);
+    }
   }
 
   private build(shared: SharedAttribute[], canApply: boolean): void {
-    this.rows = new Map();
-    const groups = new Map<string, HTMLElement>();
+    this.rows = new Map(shared.map(({ entry }) => [entry.name, new AttributeRow(entry, this, canApply)]));
+    this.groupOf.clear();
     for (const { entry } of shared) {
-      const row = new AttributeRow(entry, this, canApply);
-      this.rows.set(entry.name, row);
-      let group = groups.get(entry.kind);
+      if (ESSENTIALS.includes(entry.name)) continue;
+      let group = this.groupOf.get(entry.kind);
       if (!group) {
-        group = this.makeGroup(entry.kind, entry.kind_label);
-        groups.set(entry.kind, group);
+        group = foldingGroup(this.parts.preferences, `values.${entry.kind}`, entry.kind === "identity" ? "More about what it is" : entry.kind_label, false);
+        this.groupOf.set(entry.kind, group);
       }
-      group.append(row.root);
+      group.append(this.rows.get(entry.name)!.root);
     }
-    this.groups.replaceChildren(...groups.values());
-  }
-
-  /** A group of attributes, open or closed as the last group of that kind was. */
-  private makeGroup(kind: string, title: string): HTMLElement {
-    const group = element("details", { class: "group", open: !this.closed.has(kind) }, element("summary", {}, title));
-    group.addEventListener("toggle", () => (group.open ? this.closed.delete(kind) : this.closed.add(kind)));
-    return group;
+    this.groups.replaceChildren(...this.groupOf.values());
+    this.essentials.replaceChildren(this.note, ...ESSENTIALS.flatMap((name) => this.rows.get(name)?.root ?? []));
   }
 }
 
@@ -133,6 +145,7 @@ export function shareAttributes(sets: AttributeEntry[][]): SharedAttribute[] {
       same: rest.every((other) => JSON.stringify(other!.value) === text),
       components: commonComponents(vectors),
       overridden: entry.overridden || rest.some((other) => other!.overridden),
+      warnings: [entry, ...rest].flatMap((each) => each!.warnings ?? []).slice(0, 1),
     }];
   });
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-import type { AttributeEdit, AttributeEntry, AttributeValue } from "../connection/messages";
+import type { AttributeEdit, AttributeEntry, AttributeValue, ValueWarning } from "../connection/messages";
 import { withTyped } from "../document/components";
 import { element, setText, show } from "./element";
-import { type Components, type Field, numberField, truthField, vectorField, wordField } from "./fields";
+import { type Change, type Components, type Field, numberField, truthField, vectorField, wordField } from "./fields";
 import { GROUP_LIST, NOISE, type NumberFormat, numberText, PLAIN, THRESHOLD } from "./number_text";
 import { wordText } from "./words";
 import { icon } from "../tools/icons";
@@ -15,6 +15,8 @@ export interface SharedAttribute {
   /** Of a vector or tensor that differs: the components in which they agree. */
   components: Components | null;
   overridden: boolean;
+  /** The first thing about it that makes no sense. */
+  warnings: readonly ValueWarning[];
 }
 
 /** Levels of confidence in a value, the highest first, and the meaning of the badge beside it. */
@@ -32,16 +34,22 @@ const LEVELS: Record<string, string> = {
 export interface AttributeEdits {
   /** Components of a vector or tensor that are null stay as they are in each entity. */
   set(name: string, value: AttributeEdit): Promise<string | null>;
+  /** Changes the value of each of several entities that differ. */
+  change(name: string, change: Change): Promise<string | null>;
   reset(name: string): Promise<string | null>;
   /** The user asks to set this value for models of the catalogue. */
   apply(entry: AttributeEntry): void;
 }
 
-/** A physical attribute: its value to edit, the source and confidence of the value, and a button to reset it. */
+/** Attributes whose source the user has opened; it stays open for the next thing. */
+const opened = new Set<string>();
+
+/** A physical attribute: its value to edit, a button to reset it, what makes no sense about it, and, one click away, its interval and source. */
 export class AttributeRow {
   readonly root: HTMLElement;
   private readonly field: Field<never>;
-  private readonly level = element("span", { class: "level" });
+  private readonly level = element("button", { class: "level", "aria-expanded": "false", onclick: () => this.openSource(!opened.has(this.shown.name)) });
+  private readonly warning = element("p", { class: "value-warning", role: "note" });
   private readonly source = element("span", { class: "source" });
   private readonly reset: HTMLButtonElement;
   private shown: AttributeEntry;
@@ -53,7 +61,7 @@ export class AttributeRow {
     canApply: boolean,
   ) {
     this.shown = entry;
-    this.field = fieldFor(entry, (value) => void this.commit(entry.name, value)) as Field<never>;
+    this.field = fieldFor(entry, (value) => void this.commit(entry.name, value), (change) => void this.changeEach(entry.name, change)) as Field<never>;
     this.reset = element(
       "button",
       {
@@ -78,23 +86,47 @@ export class AttributeRow {
     );
     this.root = element(
       "div",
-      { class: "attribute", "data-testid": `attribute-${entry.name}` },
+      { class: "attribute", "data-testid": `attribute-${entry.name}`, "data-name": entry.name },
       element("span", { class: "attribute-label", title: `${entry.help}${rangeText(entry)}\n(${entry.name})` }, label),
+      this.level,
       this.field.root,
       canApply ? apply : null,
       this.reset,
-      element("span", { class: "origin" }, this.level, this.source),
+      this.source,
+      this.warning,
     );
+    this.level.dataset["testid"] = `why-${entry.name}`;
+    this.openSource(opened.has(entry.name));
   }
 
-  show({ entry, same, components, overridden }: SharedAttribute): void {
+  private openSource(open: boolean): void {
+    if (open) opened.add(this.shown.name);
+    else opened.delete(this.shown.name);
+    show(this.source, open);
+    this.level.setAttribute("aria-expanded", String(open));
+  }
+
+  /** What makes no sense, with a button that mends it where one value is to be taken back. */
+  private warn(warning: ValueWarning | undefined): void {
+    show(this.warning, warning !== undefined);
+    this.root.classList.toggle("warned", warning !== undefined);
+    if (!warning) return;
+    const { reset, remedy } = warning;
+    const text = remedy ? `${remedy[0]!.toUpperCase()}${remedy.slice(1)}` : "";
+    const mend = reset ? element("button", { class: "link", "data-testid": `mend-${this.shown.name}`, onclick: () => void this.goBack(reset) }, remedy.startsWith("back to automatic") ? text : "Back to automatic") : null;
+    this.warning.replaceChildren(`⚠ ${warning.why}. `, ...(remedy && !remedy.startsWith("back to automatic") ? [`${text}. `] : []), ...(mend ? [mend] : []));
+  }
+
+  show({ entry, same, components, overridden, warnings }: SharedAttribute): void {
     this.shown = entry;
     this.same = same;
     this.field.set((same ? entry.value : components) as never);
     const level = same ? entry.level : "mixed";
     setText(this.level, level);
     this.level.dataset["level"] = level;
-    this.level.title = LEVELS[level] ?? "";
+    this.level.title = `${LEVELS[level] ?? ""}\nClick: where the value is from`;
+    if (this.root.dataset["changed"] !== String(overridden)) this.root.dataset["changed"] = String(overridden);
+    this.warn(warnings[0]);
     const interval = same ? intervalText(entry) : "";
     // A source that only repeats its level tells nothing new; the meaning of the level does.
     const told = entry.source === entry.level ? (LEVELS[level] ?? "") : entry.source;
@@ -110,6 +142,10 @@ export class AttributeRow {
     this.field.setError(await this.edits.set(name, this.same ? wholeValue(edit, this.shown.value) : edit));
   }
 
+  private async changeEach(name: string, change: Change): Promise<void> {
+    this.field.setError(await this.edits.change(name, change));
+  }
+
   private async goBack(name: string): Promise<void> {
     this.field.setError(await this.edits.reset(name));
   }
@@ -120,13 +156,13 @@ export function wholeValue(edit: AttributeEdit, known: AttributeValue): Attribut
   return Array.isArray(edit) ? withTyped(known as number[], edit) : edit;
 }
 
-export function fieldFor(entry: AttributeEntry, commit: (value: AttributeEdit) => void): Field<never> {
+export function fieldFor(entry: AttributeEntry, commit: (value: AttributeEdit) => void, each?: (change: Change) => void): Field<never> {
   const label = entry.label || entry.name;
   const unit = unitText(entry.unit);
   const made = (() => {
     switch (entry.type) {
       case "number":
-        return attributeNumber(label, unit, entry, commit);
+        return attributeNumber(label, unit, entry, commit, each);
       case "truth":
         return truthField(label, commit);
       case "vector":
@@ -153,8 +189,8 @@ function formatOf(name: string, range: AttributeEntry["range"]): NumberFormat {
 }
 
 /** A number; the protocol writes infinity as a word. */
-function attributeNumber(label: string, unit: string, { name, range }: AttributeEntry, commit: (value: AttributeValue) => void): Field<AttributeValue> {
-  const field = numberField(label, unit, (value) => commit(value === Infinity ? "infinity" : value), { format: formatOf(name, range) });
+function attributeNumber(label: string, unit: string, { name, range }: AttributeEntry, commit: (value: AttributeValue) => void, each?: (change: Change) => void): Field<AttributeValue> {
+  const field = numberField(label, unit, (value) => commit(value === Infinity ? "infinity" : value), { format: formatOf(name, range), each });
   return { ...field, set: (next) => field.set(next === null ? null : toNumber(next)) };
 }
 

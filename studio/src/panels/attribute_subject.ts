@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { AttributeEdit, AttributeEntry, AttributeValue } from "../connection/messages";
 import type { Parts } from "../parts";
+import type { Change } from "./fields";
 
 /** Of a larger selection only so many entities are asked for, because asking for all would take long. */
 const MOST_ASKED = 32;
@@ -13,6 +14,8 @@ export interface AttributeSubject {
   load(): Promise<{ sets: AttributeEntry[][]; note: string }>;
   /** Components of a vector or tensor that are null stay as they are in each entity. */
   set(name: string, value: AttributeEdit): Promise<unknown>;
+  /** Changes the number that each has by its own, in one step of undo. */
+  change(name: string, change: Change): Promise<unknown>;
   reset(name: string): Promise<unknown>;
   /** Keys of the catalogue's models that the entities have; empty where one of them has no model. */
   models(): string[];
@@ -41,6 +44,19 @@ export class SelectedEntities implements AttributeSubject {
 
   set(name: string, value: AttributeEdit): Promise<unknown> {
     return this.parts.server.request("entity.set_attribute", { indices: this.indices, name, value });
+  }
+
+  async change(name: string, change: Change): Promise<unknown> {
+    const merge = `values-${Date.now()}`;
+    const { server } = this.parts;
+    // Asked anew: the shown values are those of the first entities only.
+    const told = await Promise.all(this.indices.map((index) => server.request("entity.attributes", { index })));
+    return Promise.all(
+      told.flatMap(({ attributes }, at) => {
+        const entry = attributes.find((each) => each.name === name);
+        return entry && typeof entry.value === "number" ? [server.request("entity.set_attribute", { indices: [this.indices[at]!], name, value: change(entry.value), merge })] : [];
+      }),
+    );
   }
 
   reset(name: string): Promise<unknown> {
@@ -75,6 +91,11 @@ export class CatalogueModel implements AttributeSubject {
   set(name: string, value: AttributeEdit): Promise<unknown> {
     // Of a single model every component is known.
     return this.parts.server.request("catalog.set_attribute", { key: this.key, name, value: value as AttributeValue });
+  }
+
+  /** One model has one value, which its field knows. */
+  change(): Promise<unknown> {
+    return Promise.resolve();
   }
 
   reset(name: string): Promise<unknown> {

@@ -34,7 +34,7 @@ export function openTextDialog(
   title: string,
   { label, value, action, testId, note }: { label: string; value: string; action: string; testId: string; note?: string },
   take: (text: string) => Promise<string | null>,
-): void {
+): HTMLDialogElement {
   const input = element("input", { type: "text", value, "aria-label": label, "data-testid": `${testId}-name` });
   const error = element("p", { class: "field-error", role: "alert" });
   show(error, false);
@@ -56,6 +56,7 @@ export function openTextDialog(
   const dialog = openDialog(title, `${testId}-dialog`, form);
   input.focus();
   input.select();
+  return dialog;
 }
 
 /** A date and time of the protocol for people; empty where there is none. */

@@ -11,7 +11,8 @@ import { presentPose, rotationOfDegrees } from "../tools/typed_poses";
 import { colorOf } from "../view/entity_view";
 import { fieldsOf, isOfLengths, shownLength, withShownLength } from "../view/shapes_of_lengths";
 import { element, show } from "./element";
-import { type Components, type Field, numberField, textField, truthField, vectorField } from "./fields";
+import { foldingGroup } from "./folding";
+import { type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { modelCard } from "./model_card";
 
 const LIVE_EVERY_MS = 200;
@@ -20,11 +21,14 @@ type Row = { root: HTMLElement; update(entities: Entity[]): void };
 
 /** Name, pose, size and start of the selected entities, which do not depend on their material. */
 export class EntityFields {
-  readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": "Entity" });
+  /** Name, lock and model; what matters most of its values comes between this and the fields. */
+  readonly head = element("section", { class: "entity", "data-testid": "entity-head", "aria-label": "Entity" });
+  readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": "Place and start" });
   private rows: Row[] = [];
   private lastLive = 0;
 
-  constructor(private readonly parts: Pick<Parts, "server" | "notices" | "document" | "playback" | "selection" | "models" | "entities" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "models" | "entities" | "view">) {
+    for (const root of [this.head, this.root]) show(root, false);
     parts.selection.changed.on(() => this.rebuild());
     parts.document.changed.on(() => this.update());
     parts.entities.loaded.on(() => this.update());
@@ -41,7 +45,7 @@ export class EntityFields {
 
   private rebuild(): void {
     const entities = this.entities();
-    show(this.root, entities.length > 0);
+    for (const root of [this.head, this.root]) show(root, entities.length > 0);
     if (entities.length === 0) return;
     const single = entities.length === 1 ? entities[0]! : null;
     const shown: Row[] = [...this.poseRows()];
@@ -54,11 +58,10 @@ export class EntityFields {
     const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
     const padlock = this.padlock();
     this.rows.push(padlock);
+    this.head.replaceChildren(element("div", { class: "entity-head" }, title, padlock.root), ...(card ? [card] : []));
     this.root.replaceChildren(
-      element("div", { class: "entity-head" }, title, padlock.root),
-      ...(card ? [card] : []),
-      element("details", { class: "group", open: true }, element("summary", {}, "Place and size"), ...shown.map((row) => row.root)),
-      element("details", { class: "group" }, element("summary", {}, "Start and forces"), ...start.map((row) => row.root)),
+      foldingGroup(this.parts.preferences, "entity.place", "Place and size", true, ...shown.map((row) => row.root)),
+      foldingGroup(this.parts.preferences, "entity.start", "Start and forces", false, ...start.map((row) => row.root)),
     );
     this.update();
   }
@@ -94,8 +97,9 @@ export class EntityFields {
   }
 
   private poseRows(): Row[] {
-    const position = vectorField(["Position x", "Position y", "Position z"], "m", (typed) => this.move("position", typed), 0.01);
-    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (typed) => this.move("degrees", typed), 1);
+    const only = (at: number, value: (own: number) => number) => (own: readonly number[]) => own.map((part, each) => (each === at ? value(part) : part));
+    const position = vectorField(["Position x", "Position y", "Position z"], "m", (typed) => this.move("position", (own) => withTyped(own, typed)), 0.01, (at, change) => this.move("position", only(at, change)));
+    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (typed) => this.move("degrees", (own) => withTyped(own, typed)), 1, (at, change) => this.move("degrees", only(at, change)));
     const update = (entities: Entity[]): void => {
       const poses = entities.map((entity) => presentPose(this.parts, entity));
       position.set(commonComponents(poses.map((pose) => pose.position.map((length) => rounded(length, 1e4)))));
@@ -107,13 +111,13 @@ export class EntityFields {
     ];
   }
 
-  /** Changes the typed components of all poses; in the others each entity keeps its own. */
-  private move(part: "position" | "degrees", typed: Components): void {
+  /** Changes the poses of all that are not locked. */
+  private move(part: "position" | "degrees", changed: (own: readonly number[]) => number[]): void {
     const { parts } = this;
     const poses = withoutLocked(parts, parts.selection.indices).flatMap((index) => {
       const entity = parts.document.entity(index);
       if (!entity) return [];
-      const next = withTyped(presentPose(parts, entity)[part], typed);
+      const next = changed(presentPose(parts, entity)[part]);
       return [part === "position" ? { index, position: next as Vector } : { index, rotation: rotationOfDegrees(next) }];
     });
     if (poses.length > 0) void parts.server.command("entity.transform", { poses });
@@ -124,7 +128,7 @@ export class EntityFields {
     if (!isOfLengths(shape)) return [];
     return fieldsOf(shape).map((length) => {
       const present = () => (this.entities()[0]?.shape ?? shape) as ShapeOfLengths;
-      const put = (shown: number | Vector) => this.resize({ shape: withShownLength(present(), length, shown) });
+      const put = (shown: number | Vector) => this.resize(() => ({ shape: withShownLength(present(), length, shown) }));
       const shown = (entity: Entity) => shownLength(entity.shape as ShapeOfLengths, length);
       if (length.each) {
         const own = () => shownLength(present(), length) as Vector;
@@ -137,7 +141,7 @@ export class EntityFields {
   }
 
   private scaleRow(): Row {
-    const field = numberField("Scale", "", (scale) => this.resize({ scale }), { step: 0.05 });
+    const field = numberField("Scale", "", (scale) => this.resize(() => ({ scale })), { step: 0.05, each: (change) => this.resize((entity) => ({ scale: change(entity.scale ?? 1) })) });
     return { root: row("Scale", field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
   }
 
@@ -155,14 +159,26 @@ export class EntityFields {
   private startRows(): Row[] {
     const vector = (label: string, unit: string, name: "linear_velocity" | "angular_velocity" | "force" | "torque"): Row => {
       const own = (entity: Entity): Vector => entity[name] ?? [0, 0, 0];
-      const field = vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (typed) =>
-        this.changeEach(this.entities(), (entity) => ({ [name]: withTyped(own(entity), typed) })),
+      const field = vectorField(
+        [`${label} x`, `${label} y`, `${label} z`],
+        unit,
+        (typed) => this.changeEach(this.entities(), (entity) => ({ [name]: withTyped(own(entity), typed) })),
+        undefined,
+        (at, change) => this.changeEach(this.entities(), (entity) => ({ [name]: own(entity).map((part, each) => (each === at ? change(part) : part)) })),
       );
-      return { root: row(label, field.root), update: (entities) => field.set(commonComponents(entities.map(own))) };
+      const root = row(label, field.root);
+      return {
+        root,
+        update: (entities) => {
+          field.set(commonComponents(entities.map(own)));
+          markChanged(root, entities.some((entity) => own(entity).some((part) => part !== 0)));
+        },
+      };
     };
     const truth = (label: string, name: "enabled" | "start_asleep" | "continuous", standard: boolean): Row => {
       const field = truthField(label, (value) => this.change({ [name]: value }));
-      return bound(label, field, (entity) => entity[name] ?? standard);
+      const shown = bound(label, field, (entity) => entity[name] ?? standard);
+      return { root: shown.root, update: (entities) => (shown.update(entities), markChanged(shown.root, entities.some((entity) => (entity[name] ?? standard) !== standard))) };
     };
     return [
       vector("Velocity", "m/s", "linear_velocity"),
@@ -180,9 +196,9 @@ export class EntityFields {
   }
 
   /** Changes the size, which locked entities keep. */
-  private resize(entity: NewEntity): void {
+  private resize(changed: (entity: Entity) => NewEntity): void {
     const free = new Set(withoutLocked(this.parts, this.parts.selection.indices));
-    this.changeEach(this.entities().filter(({ index }) => free.has(index)), () => entity);
+    this.changeEach(this.entities().filter(({ index }) => free.has(index)), changed);
   }
 
   private changeEach(entities: Entity[], changed: (entity: Entity) => NewEntity): void {
@@ -198,6 +214,11 @@ function row(label: string, field: HTMLElement): HTMLElement {
 
 function bound<Value>(label: string, field: Field<Value>, read: (entity: Entity) => Value): Row {
   return { root: row(label, field.root), update: (entities) => field.set(common(entities, read)) };
+}
+
+/** For “Only what I changed”. */
+function markChanged(root: HTMLElement, changed: boolean): void {
+  if (root.dataset["changed"] !== String(changed)) root.dataset["changed"] = String(changed);
 }
 
 /** The value that all entities have, or null. */

@@ -3,14 +3,16 @@ import { element } from "./element";
 import { NOISE, type NumberFormat, PLAIN, readNumber } from "./number_text";
 import { wordText } from "./words";
 
-/** What is typed for a value: a number, or a change of it: "+=0.5", "-=0.1", "*2", "/3", "+0.5". NaN where it is neither. */
-export function readChange(text: string, value: number | null, format: NumberFormat): number {
+/** A change of a number, as it is typed: "+=0.5", "-=0.1", "*2", "/3", "+0.5". */
+export type Change = (value: number) => number;
+
+/** Null where the text tells no change. */
+export function readChange(text: string): Change | null {
   const change = /^\s*(\+=|-=|\*=|\/=|\+|\*|\/)\s*(.+)$/.exec(text);
-  if (!change) return format.read(text);
-  const by = readNumber(change[2]!);
-  if (value === null) return NaN;
+  const by = change ? readNumber(change[2]!) : NaN;
+  if (!change || Number.isNaN(by)) return null;
   const sign = change[1]![0];
-  return sign === "+" ? value + by : sign === "-" ? value - by : sign === "*" ? value * by : value / by;
+  return (value) => (sign === "+" ? value + by : sign === "-" ? value - by : sign === "*" ? value * by : value / by);
 }
 
 export interface Field<Value> {
@@ -30,10 +32,12 @@ interface NumberOptions {
   format?: NumberFormat;
   /** A word in the box, such as x. */
   mark?: string;
+  /** Changes each of several values that differ. */
+  each?: ((change: Change) => void) | undefined;
 }
 
 /** One number. Enter or leaving the field commits, Escape restores, the arrow keys change by 1 % or by a step. */
-export function numberField(label: string, unit: string, commit: (value: number) => void, { step, format = PLAIN, mark }: NumberOptions = {}): Field<number> {
+export function numberField(label: string, unit: string, commit: (value: number) => void, { step, format = PLAIN, mark, each }: NumberOptions = {}): Field<number> {
   let shown = "";
   let value: number | null = null;
   const hasUnit = unit !== "" && unit !== "1";
@@ -52,7 +56,13 @@ export function numberField(label: string, unit: string, commit: (value: number)
   const setError = (reason: string | null): void => markError(root, input, reason);
   const take = (): void => {
     if (input.value === shown) return;
-    const typed = readChange(input.value, value, format);
+    const change = readChange(input.value);
+    if (change && value === null && each) {
+      setError(null);
+      input.value = shown;
+      return each(change);
+    }
+    const typed = change ? (value === null ? NaN : change(value)) : format.read(input.value);
     if (Number.isNaN(typed)) return setError(`${format.expected}; a change is typed as +=0.5 or *2`);
     setError(null);
     if (typed !== format.read(input.value)) input.value = format.write(typed);
@@ -95,9 +105,9 @@ export function numberField(label: string, unit: string, commit: (value: number)
 }
 
 /** Numbers side by side, such as x y z. Commits only the typed one; the others are null. */
-export function vectorField(labels: readonly string[], unit: string, commit: (typed: Components) => void, step?: number): Field<Components> {
+export function vectorField(labels: readonly string[], unit: string, commit: (typed: Components) => void, step?: number, each?: (at: number, change: Change) => void): Field<Components> {
   const fields = labels.map((label, at) =>
-    numberField(label, "", (typed) => commit(labels.map((_, each) => (each === at ? typed : null))), { step, mark: markOf(label) }),
+    numberField(label, "", (typed) => commit(labels.map((_, each) => (each === at ? typed : null))), { step, mark: markOf(label), each: each && ((change) => each(at, change)) }),
   );
   const root = element("span", { class: "field vector" }, ...fields.map((field) => field.root));
   if (unit && unit !== "1") root.append(element("span", { class: "unit" }, unit));

@@ -5,7 +5,7 @@ import type { Entity } from "../connection/scene_types";
 import type { Parts } from "../parts";
 import { icon } from "../tools/icons";
 import { setLocked } from "../tools/locks";
-import { element } from "./element";
+import { element, setText, show } from "./element";
 
 /** The tree shows no more rows than this; the filter finds the rest. */
 const MOST_ROWS = 400;
@@ -24,7 +24,7 @@ export class Hierarchy {
   private rows = 0;
   private timer = 0;
 
-  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "entities" | "view">) {
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "entities" | "view" | "warnings">) {
     this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
     // Beside the rows: out of all groups.
     this.takesDrops(this.list, "");
@@ -33,6 +33,7 @@ export class Hierarchy {
       this.timer = window.setTimeout(() => this.fill(), DELAY_MS);
     });
     parts.selection.changed.on(() => this.mark());
+    parts.warnings.changed.on(() => this.warn());
   }
 
   private fill(): void {
@@ -47,6 +48,19 @@ export class Hierarchy {
     this.list.replaceChildren(...rows);
     if (focused) this.list.querySelector<HTMLElement>(focused)?.focus();
     this.mark();
+    this.warn();
+  }
+
+  /** Marks what has values that make no sense. */
+  private warn(): void {
+    for (const mark of this.list.querySelectorAll<HTMLElement>(".row-warning")) {
+      const index = Number(mark.closest<HTMLElement>("[data-index]")!.dataset["index"]);
+      const text = this.parts.warnings.of(index).map(({ label, why }) => `${label}: ${why}`).join("\n");
+      show(mark, text !== "");
+      mark.title = text;
+      setText(mark, text && "⚠");
+      mark.setAttribute("aria-label", text);
+    }
   }
 
   /** A selector of the row or padlock that has the keyboard's focus, which new rows would lose; else null. */
@@ -144,6 +158,7 @@ export class Hierarchy {
       },
       element("span", {}, nameOf(entity)),
       element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
+      element("span", { class: "row-warning", role: "img" }),
       parts.document.spawned.has(entity.index) ? null : this.padlock(entity),
     );
     row.style.setProperty("--level", String(level));

@@ -21,6 +21,8 @@ const DEBUG_LABELS: Record<DebugName, string> = {
   particles: "Particles",
   deformables: "Nodes and edges",
   trees: "Broad phase",
+  velocities: "Velocities",
+  forces: "Forces",
 };
 
 /** For example "1,234 lines and 56 points not drawn"; empty where all are drawn. */
@@ -75,6 +77,8 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
   const angle = numberField("Snap to", "°", (value) => value > 0 && preferences.set("snapAngle", value));
   step.set(preferences.get("snapLength"));
   angle.set(preferences.get("snapAngle"));
+  const pull = numberField("Strength of the mouse", "N", (value) => value >= 1 && value <= 1e6 && preferences.set("pull", value), { step: 50 });
+  pull.set(preferences.get("pull"));
   const inside = debugList(parts);
   const dialog = openDialog(
     "View options",
@@ -93,6 +97,7 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
       inside.root,
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
+      row("How strongly the mouse pulls in a run: one arm has about 400", pull.root),
       row("Your name in the history of changes", userNameField(parts)),
       ...(hint ? [hint] : []),
     ),

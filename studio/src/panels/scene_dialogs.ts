@@ -28,8 +28,7 @@ function mayLeave(parts: Opener): Promise<boolean> {
       element("p", {}, `“${scene.title}” is then kept as it is among the recovered scenes, where “Open a scene” finds it.`),
       dialogButtons(
         element("button", { onclick: () => dialog.close() }, "Cancel"),
-        // A scene without a name would have to be asked for one.
-        scene.name ? element("button", { "data-testid": "save-first", onclick: () => void saveFirst() }, "Save first") : null,
+        element("button", { "data-testid": "save-first", onclick: () => void saveFirst() }, "Save first"),
         element("button", { class: "primary", "data-testid": "leave-scene", onclick: leave }, "Leave and keep it"),
       ),
     );
@@ -132,28 +131,29 @@ function nameBeside({ kind, name, title }: SceneListing): string {
   return kind === "saved" && title && title !== name ? name : "";
 }
 
-/** Saves the scene with the camera as it is; a scene without a name asks for one. Whether it was saved at once. */
+/** Saves the scene with the camera as it is; a scene without a name asks for one. Whether it was saved. */
 export async function saveScene(parts: Pick<Parts, "server" | "notices" | "document" | "view">): Promise<boolean> {
-  if (!parts.document.name) {
-    saveAs(parts);
-    return false;
-  }
+  if (!parts.document.name) return saveAs(parts);
   const saved = await parts.server.command("scene.save", { camera: parts.view.rig.seen() });
   if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });
   return saved !== undefined;
 }
 
-export function saveAs(parts: Pick<Parts, "server" | "notices" | "document" | "view">): void {
+/** Saves the scene under a name that the user gives; whether they did. */
+export function saveAs(parts: Pick<Parts, "server" | "notices" | "document" | "view">): Promise<boolean> {
   const value = parts.document.name || parts.document.title;
-  openTextDialog("Save the scene", { label: "Name", value, action: "Save", testId: "save", note: "It opens again as you see it now." }, async (name) => {
+  let isSaved = false;
+  const dialog = openTextDialog("Save the scene", { label: "Name", value, action: "Save", testId: "save", note: "It opens again as you see it now." }, async (name) => {
     try {
       const saved = await parts.server.request("scene.save", { name, camera: parts.view.rig.seen() });
       parts.notices.tell({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
+      isSaved = true;
       return null;
     } catch (error) {
       return reasonText(error as Error);
     }
   });
+  return new Promise((resolve) => dialog.addEventListener("close", () => resolve(isSaved)));
 }
 
 /** Keeps a copy of the scene as it is now under a name of its own. */

@@ -6,6 +6,7 @@ import { outermostGroup } from "../document/groups";
 import type { Parts } from "../parts";
 import type { UserAction } from "./actions";
 import type { IconName } from "./icons";
+import { withoutLocked } from "./locks";
 
 /** One press of an arrow key, m, where no steps are set. */
 const NUDGE = 0.01;
@@ -13,7 +14,7 @@ const TURN = Math.PI / 12;
 /** Presses of a key and notches of a wheel that follow each other within this time are one step of undo, ms. */
 const ONE_STEP = 800;
 
-type ArrangeParts = Pick<Parts, "preferences" | "server" | "document" | "selection" | "view">;
+type ArrangeParts = Pick<Parts, "preferences" | "server" | "notices" | "document" | "selection" | "view">;
 
 /** The same key for edits in a row, so that undo takes them back together. */
 class MergeKeys {
@@ -36,6 +37,11 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
   const some = () => selection.indices.length > 0;
   const atLeast = (count: number) => () => selection.indices.length >= count;
   const indices = () => [...selection.indices];
+  // Locked things stay; the others are arranged where there are enough of them.
+  const arrange = (least: number, run: (indices: number[]) => void): void => {
+    const free = withoutLocked(parts, selection.indices);
+    if (free.length >= least) run(free);
+  };
   const nudge = (key: string, label: string, right: number, up: number, away: number): UserAction[] =>
     [1, 10].map((times) => ({
       id: `arrange.nudge.${key}.${times}`,
@@ -53,7 +59,7 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
     group: "Arrange",
     keys: [],
     possible: atLeast(2),
-    run: () => void parts.server.command("entity.align", { indices: indices(), axis, at }),
+    run: () => arrange(2, (free) => void parts.server.command("entity.align", { indices: free, axis, at })),
   });
   const along = (verb: string, id: string, least: number, run: (axis: Axis) => void, icons: Partial<Record<Axis, IconName>>): UserAction[] =>
     (["x", "y", "z"] as const).map((axis) => ({ ...(icons[axis] && { icon: icons[axis] }), id: `arrange.${id}.${axis}`, label: `${verb} ${axis.toUpperCase()}`, group: "Arrange", keys: [], possible: atLeast(least), run: () => run(axis) }));
@@ -75,8 +81,8 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
     align("z", "low", "at the lowest Z", "alignFar"),
     align("z", "center", "the middles along Z", "alignBetween"),
     align("z", "high", "at the highest Z", "alignNear"),
-    ...along("Equal gaps along", "distribute", 3, (axis) => void parts.server.command("entity.distribute", { indices: indices(), axis }), { x: "gapsAcross", z: "gapsAlong" }),
-    ...along("Mirror along", "mirror", 1, (axis) => void parts.server.command("entity.mirror", { indices: indices(), axis }), { x: "mirrorAcross", z: "mirrorAlong" }),
+    ...along("Equal gaps along", "distribute", 3, (axis) => arrange(3, (free) => void parts.server.command("entity.distribute", { indices: free, axis })), { x: "gapsAcross", z: "gapsAlong" }),
+    ...along("Mirror along", "mirror", 1, (axis) => arrange(1, (free) => void parts.server.command("entity.mirror", { indices: free, axis })), { x: "mirrorAcross", z: "mirrorAlong" }),
     ...(["x", "y", "z"] as const).map(
       (axis, at): UserAction => ({
         id: `arrange.array.${axis}`,
@@ -119,14 +125,16 @@ async function nudgeBy(parts: ArrangeParts, right: number, up: number, away: num
   const aside: Vector = [-ahead[2], 0, ahead[0]];
   const step = preferences.get("snap") ? preferences.get("snapLength") : NUDGE;
   const offset = [0, 1, 2].map((axis) => step * (right * aside[axis]! + away * ahead[axis]! + (axis === 1 ? up : 0))) as Vector;
-  await server.command("entity.move", { indices: [...selection.indices], offset, merge: merges.next("nudge") });
+  const indices = withoutLocked(parts, selection.indices);
+  if (indices.length > 0) await server.command("entity.move", { indices, offset, merge: merges.next("nudge") });
 }
 
-function turn(parts: Pick<Parts, "server" | "selection">, angle: number): void {
-  void parts.server.command("entity.turn", { indices: [...parts.selection.indices], angle, merge: merges.next("turn") });
+function turn(parts: Pick<Parts, "server" | "notices" | "document" | "selection">, angle: number): void {
+  const indices = withoutLocked(parts, parts.selection.indices);
+  if (indices.length > 0) void parts.server.command("entity.turn", { indices, angle, merge: merges.next("turn") });
 }
 
 /** A notch turns by 15°. */
-export function turnByWheel(parts: Pick<Parts, "server" | "selection">, notches: number): void {
+export function turnByWheel(parts: Pick<Parts, "server" | "notices" | "document" | "selection">, notches: number): void {
   if (notches !== 0) turn(parts, -Math.sign(notches) * TURN);
 }

@@ -17,6 +17,8 @@ export class Gizmo {
   readonly changed = new Signal<void>();
   tool: Tool = "select";
   space: "world" | "local" = "world";
+  /** Whether other handles in the picture have the pointer. */
+  readonly others = new Set<() => boolean>();
   private readonly pivot = new Object3D();
   private readonly controls: TransformControls;
   private drag: PoseDrag | null = null;
@@ -52,7 +54,7 @@ export class Gizmo {
 
   /** A handle is under the pointer or being dragged: the click belongs to the gizmo. */
   get busy(): boolean {
-    return this.controls.dragging || (this.controls.axis !== null && this.controls.object !== undefined);
+    return this.controls.dragging || (this.controls.axis !== null && this.controls.object !== undefined) || [...this.others].some((isBusy) => isBusy());
   }
 
   use(tool: Tool): void {

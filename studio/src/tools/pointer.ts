@@ -3,7 +3,7 @@ import { Plane, Vector3 } from "three";
 import { BodyState } from "../document/motion";
 import type { Parts } from "../parts";
 import type { Hit } from "../view/view";
-import type { Gizmo } from "./gizmo";
+import type { Gizmo, Tool } from "./gizmo";
 import { isLocked, unlocked } from "./locks";
 import { PoseDrag } from "./poses";
 import { SpringLine } from "./spring_line";
@@ -39,11 +39,13 @@ export class Pointer {
   private lastX = 0;
   private lastY = 0;
   private moved = false;
+  /** R is held. */
+  private turning: { before: Tool; used: boolean } | null = null;
   private readonly held = new Set<string>();
   private readonly spring: SpringLine;
 
   constructor(
-    private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "people" | "playback" | "selection" | "motion" | "entities" | "view">,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "people" | "playback" | "selection" | "motion" | "entities" | "view">,
     private readonly gizmo: Gizmo,
   ) {
     this.spring = new SpringLine(parts);
@@ -137,7 +139,7 @@ export class Pointer {
     this.gesture = { kind: "grab", plane, sending: false, newer: null };
     this.spring.begin(hit.index, hit.point);
     this.grabbed.emit();
-    void this.parts.server.command("simulation.grab", { index: hit.index, point, target: point });
+    void this.parts.server.command("simulation.grab", { index: hit.index, point, target: point, strength: this.parts.preferences.get("pull") });
   }
 
   private pull(event: PointerEvent): void {
@@ -262,11 +264,21 @@ export class Pointer {
     // Wheels report lines or pixels; a notch is 3 lines or about 100 pixels.
     const notches = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY / 3 : event.deltaY / 100;
     // Some systems turn a wheel with Alt or Shift into a sideways one.
-    if (event.altKey && this.parts.selection.indices.length > 0) return turnByWheel(this.parts, notches || Math.sign(event.deltaX));
+    const turns = event.altKey || this.turning !== null;
+    if (this.turning) this.turning.used = true;
+    if (turns && this.parts.selection.indices.length > 0) return turnByWheel(this.parts, notches || Math.sign(event.deltaX));
     this.parts.view.rig.zoom(Math.min(Math.max(notches, -3), 3));
   }
 
+  /** With R held the wheel turns the selection. R alone is the scale tool, so that the tool of before comes back. */
+  private turningKey(event: KeyboardEvent, down: boolean): void {
+    if (event.code !== "KeyR" || event.repeat) return;
+    if (!down && this.turning?.used) this.gizmo.use(this.turning.before);
+    this.turning = down && !event.ctrlKey && !event.metaKey ? { before: this.gizmo.tool, used: false } : null;
+  }
+
   private flightKey(event: KeyboardEvent, down: boolean): void {
+    this.turningKey(event, down);
     if (!this.flying) return;
     if (down) this.held.add(event.code);
     else this.held.delete(event.code);
@@ -275,6 +287,7 @@ export class Pointer {
   }
 
   private stopFlight(): void {
+    this.turning = null;
     this.flying = false;
     this.held.clear();
     this.parts.view.rig.fly(0, 0, 0);

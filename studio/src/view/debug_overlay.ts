@@ -9,11 +9,14 @@ const POINT_SIZE = 5;
 const DIMMED = 0.4;
 /** Colours by meaning, as docs/protocol.md numbers them; null: a colour for each number. */
 const COLORS: readonly (number | null)[] = [
-  0x6f86a0, 0x9a7fd0, 0xff5a4d, 0x4fd36b, 0x9aa0a6, 0xd8b04a, 0xffd23e, 0x4dc3ff, 0xff8a3c, null, 0xe6e6e6, null, 0xff6ad5, 0xffffff, null, 0x38a6ff, 0xffe08a, 0x7fd1c0, 0xff9ad0, null,
+  0x6f86a0, 0x9a7fd0, 0xff5a4d, 0x4fd36b, 0x9aa0a6, 0xd8b04a, 0xffd23e, 0x4dc3ff, 0xff8a3c, null, 0xe6e6e6, null, 0xff6ad5, 0xffffff, null, 0x38a6ff, 0xffe08a, 0x7fd1c0, 0xff9ad0, null, 0x6cff9a, null,
 ];
 /** Colours of the axes X, Y and Z. */
 const AXIS_COLORS = [0xff4d4d, 0x5fdc5f, 0x5a8dff];
 const AXIS_MEANINGS = [11, 14];
+/** Colours of weight, constant force and forces of contacts. */
+const FORCE_COLORS = [0xff5a4d, 0xd08cff, 0xff9f3c];
+const FORCE_MEANING = 21;
 
 /** Debug drawings of the solver, over the picture. */
 export class DebugOverlay {
@@ -74,7 +77,7 @@ function fill(object: LineSegments | Points, batches: readonly DebugBatch[], pla
 }
 
 function colorOf({ meaning, dim, number }: DebugBatch): Color {
-  const known = AXIS_MEANINGS.includes(meaning) ? AXIS_COLORS[number % 3] : COLORS[meaning];
+  const known = AXIS_MEANINGS.includes(meaning) ? AXIS_COLORS[number % 3] : meaning === FORCE_MEANING ? FORCE_COLORS[number % 3] : COLORS[meaning];
   const color = known == null ? new Color().setHSL((0.08 + number * 0.381966) % 1, 0.8, 0.6) : new Color(known);
   return dim ? color.multiplyScalar(DIMMED) : color;
 }
