@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_vertices = 100'000'000;
+constexpr std::size_t max_vertices = 100'000'000;
 const Error damaged{"compact geometry", "is damaged"};
 
 /// Reads out of bounds of the JSON throw json::exception, which decode_mesh catches.
@@ -31,7 +31,7 @@ Result<geometry::TriangleMesh> mesh_of(const json& document, const GlbView& glb)
     geometry::TriangleMesh mesh;
     for (const json& primitive : document.at("meshes").at(0).at("primitives")) {
         const auto part = unpack_part(document, primitive, glb, PartContent::surface);
-        if (!part || mesh.positions.size() + part->positions.size() > most_vertices) return damaged;
+        if (!part || mesh.positions.size() + part->positions.size() > max_vertices) return damaged;
 
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const GridPoint& q : part->positions) {

@@ -17,13 +17,13 @@ using Point = std::array<float, 3>;
 /// Steps of the grid along the model's largest extent.
 constexpr double grid_extent = 65535;
 /// A level that keeps more than this share of the triangles is not worth its memory: the one before serves.
-constexpr double worthwhile_share = 0.8;
+constexpr double worthwhile_fraction = 0.8;
 /// From this error on clusters of vertices may become one (sloppily: what is near is joined, whether or not an edge
 /// joins it), where edges alone keep more than twice as many triangles.
-constexpr double least_sloppy_error = 0.015;
-constexpr std::size_t least_sloppy_indices = 3 * 64;
+constexpr double min_sloppy_error = 0.015;
+constexpr std::size_t min_sloppy_indices = 3 * 64;
 /// A cluster's vertices move up to its diagonal, about 1.7 times its side.
-constexpr double cluster_share = 0.6;
+constexpr double cluster_fraction = 0.6;
 
 /// Vertices that share place and texture are one here: normals do not keep edges from being collapsed.
 struct WeldedPart {
@@ -83,10 +83,10 @@ std::vector<std::uint32_t> simplify(const WeldedPart& welded, const std::vector<
     std::vector<std::uint32_t> result(indices.size());
     result.resize(meshopt_simplify(result.data(), indices.data(), indices.size(), points, count, sizeof(Point), 0,
                                    relative, 0, nullptr));
-    if (!may_be_sloppy || result.size() < least_sloppy_indices) return result;
+    if (!may_be_sloppy || result.size() < min_sloppy_indices) return result;
     std::vector<std::uint32_t> sloppy(indices.size());
     sloppy.resize(meshopt_simplifySloppy(sloppy.data(), indices.data(), indices.size(), points, count, sizeof(Point), 0,
-                                         static_cast<float>(cluster_share) * relative, nullptr));
+                                         static_cast<float>(cluster_fraction) * relative, nullptr));
     return 2 * sloppy.size() < result.size() ? sloppy : result;
 }
 
@@ -105,14 +105,14 @@ std::vector<DetailLevel> detail_levels(const StoredPart& part) {
     std::vector<DetailLevel> levels;
     DetailLevel before{.indices = part.indices, .error = 0};
     double reached = 0;
-    for (const double share : level_errors) {
-        const double error = share * grid_extent;
+    for (const double fraction : level_errors) {
+        const double error = fraction * grid_extent;
         if (scale <= error) {
             before = {.indices = {}, .error = scale};
         } else {
             // Each level is made from the one before, so that their errors add up.
-            auto coarser = simplify(welded, indices, error - reached, scale, share > least_sloppy_error);
-            if (static_cast<double>(coarser.size()) <= worthwhile_share * static_cast<double>(indices.size())) {
+            auto coarser = simplify(welded, indices, error - reached, scale, fraction > min_sloppy_error);
+            if (static_cast<double>(coarser.size()) <= worthwhile_fraction * static_cast<double>(indices.size())) {
                 indices = std::move(coarser);
                 reached = error;
                 before = {.indices = dress(welded, part, indices), .error = error};
