@@ -25,6 +25,7 @@ import { Layout } from "./panels/layout";
 import { LevelBar, planActions } from "./panels/level_bar";
 import { LibraryProgress } from "./panels/library_progress";
 import { ModelBrowser } from "./panels/model_browser";
+import { LookFields } from "./panels/look_fields";
 import { ModelFields } from "./panels/model_fields";
 import { openOptions } from "./panels/options_menu";
 import { Overlays } from "./panels/overlays";
@@ -122,6 +123,7 @@ function start(): void {
     new ValueTools(studio).root,
     new SelectionOverlays(studio).root,
     entityFields.root,
+    new LookFields(studio).root,
     new PinFields(studio).root,
     attributes.root,
     new JointFields(studio, joints).root,

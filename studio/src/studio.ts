@@ -62,13 +62,14 @@ export class Studio implements Parts {
   private readonly onOneProcessor = ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname) && drawsInSoftware();
 
   constructor(canvas: HTMLCanvasElement) {
-    this.view = new View(canvas, this.motion, this.entities, this.people, this.preferences.get("quality"));
+    this.view = new View(canvas, this.motion, this.entities, this.people, this.document, this.preferences.get("quality"));
     this.framing = new Framing(this.document, this.entities, this.view.rig);
     new PresenceSender(this);
     this.followPeople();
     this.followDocument();
     this.followConnection();
     this.followPreferences();
+    this.followLook();
   }
 
   private followPeople(): void {
@@ -181,6 +182,16 @@ export class Studio implements Parts {
       // The next frame is requested after this one has been drawn; where nothing is drawn (a hidden page), at once.
       if (document.hidden) this.connection.wantFrame();
       else setTimeout(() => requestAnimationFrame(() => this.connection.wantFrame()), this.view.pace);
+    });
+  }
+
+  private followLook(): void {
+    const { document: scene, view } = this;
+    let hour: number | null = null;
+    scene.changed.on(({ all, settings }) => {
+      view.lamps.take();
+      const next = scene.sky ? scene.timeOfDay : null;
+      if ((all || settings) && next !== hour) view.setHour((hour = next));
     });
   }
 

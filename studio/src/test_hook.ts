@@ -27,6 +27,8 @@ export interface TestHook {
   levelOf(index: number): number | undefined;
   /** How dark the contact shadow of an entity is, 0 … 1, and how high it lies, m; null: it has none. */
   contactShadow(index: number): { darkness: number; height: number } | null;
+  /** The hour that sun and sky are drawn for (null: the plain light), and lamps that are on and that light the picture. */
+  light(): { hour: number | null; on: number[]; shining: number };
   /** Draws everything in full detail, or not any more. */
   showFullDetail(full: boolean): void;
   /** Draws so many pictures while the camera moves sideways; the growth of the page's memory by a picture, bytes. */
@@ -107,6 +109,7 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
       const height = contactShadows.heightOf(index);
       return height === null ? null : { darkness: contactShadows.darknessOf(index), height };
     },
+    light: () => ({ hour: studio.view.environment.hour, on: [...studio.view.lamps.on], shining: studio.view.lamps.shining }),
     showFullDetail: (full) => {
       studio.view.viewer.full = full;
       studio.view.invalidate();

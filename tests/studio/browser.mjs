@@ -95,3 +95,18 @@ export function difference(page, one, other) {
     [one.toString("base64"), other.toString("base64")],
   );
 }
+
+/** The mean brightness of a picture, 0 … 255. */
+export function brightness(page, picture) {
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let sum = 0;
+    for (let at = 0; at < data.length; at += 4) sum += data[at] + data[at + 1] + data[at + 2];
+    return sum / (0.75 * data.length);
+  }, picture.toString("base64"));
+}

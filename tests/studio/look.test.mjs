@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How the scene looks: levels of detail beside full detail, what is picked then, contact shadows.
+// How the scene looks: levels of detail beside full detail, what is picked then, contact shadows, sky, lamps, finishes.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { difference, pictureOfScene } from "./browser.mjs";
+import { brightness, difference, pictureOfScene } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const session = new Session();
@@ -75,5 +75,55 @@ test("contact shadows lie on what is below, follow, fade with height and go", as
   await page.waitForFunction(() => window.embody.contactShadow(3) === null);
   await session.command("entity.remove", { indices: [2] });
   await page.waitForFunction(() => window.embody.contactShadow(2) === null);
+  assert.deepEqual(page.faults, []);
+});
+
+test("the sky follows the time of day, which is an edit that undo takes back", async () => {
+  const box = { index: 2, shape: { type: "box", half_extents: [0.4, 0.4, 0.4] }, pose: { position: [0, 0.4, 0] } };
+  const page = await open([box], { position: [0, 1.6, 5], target: [0, 0.8, 0] });
+  const hour = () => page.evaluate(() => window.embody.light().hour);
+  const reaches = (wanted) => page.waitForFunction((wanted) => window.embody.light().hour === wanted, wanted);
+  assert.equal(await hour(), null);
+  await page.getByLabel("Sky").check();
+  await reaches(14);
+  const day = await brightness(page, await pictureOfScene(page));
+  await page.getByTestId("time-of-day").fill("23");
+  await reaches(23);
+  const night = await brightness(page, await pictureOfScene(page));
+  assert.ok(night < day / 2, `${night} by night, ${day} by day`);
+  await session.command("edit.undo");
+  await reaches(14);
+  await session.command("edit.undo");
+  await reaches(null);
+  await assert.rejects(session.command("scene.settings", { time_of_day: 25 }), /time_of_day.*24/);
+  assert.deepEqual(page.faults, []);
+});
+
+test("a lamp that is switched on in the panel lights what is around it", async () => {
+  const lamp = { index: 2, name: "Lamp", shape: { type: "cylinder", radius: 0.1, half_height: 0.5 }, pose: { position: [0, 0.5, 0] } };
+  const page = await open([lamp], { position: [0, 2, 4], target: [0, 0.4, 0] });
+  await session.command("scene.settings", { sky: true, time_of_day: 0 });
+  await page.waitForFunction(() => window.embody.light().hour === 0);
+  const { x, y } = await page.evaluate(() => window.embody.seenAt(2));
+  await page.mouse.click(x, y);
+  await page.waitForFunction(() => window.embody.selection().includes(2));
+  const dark = await brightness(page, await pictureOfScene(page));
+  await page.getByTestId("look-fields").getByLabel("Light").check();
+  await page.waitForFunction(() => window.embody.light().on.includes(2) && window.embody.light().shining === 1);
+  const lit = await brightness(page, await pictureOfScene(page));
+  assert.ok(lit > dark + 3, `${lit} with the lamp, ${dark} without`);
+  await session.command("entity.update", { index: 2, entity: { light: { on: false } } });
+  await page.waitForFunction(() => window.embody.light().on.length === 0);
+  assert.deepEqual(page.faults, []);
+});
+
+test("a finish is drawn over the colour", async () => {
+  const slab = { index: 2, shape: { type: "box", half_extents: [3, 0.05, 3] }, color: [0.5, 0.35, 0.2], pose: { position: [0, 0.05, 0] } };
+  const page = await open([slab], { position: [0, 3, 3], target: [0, 0, 0] });
+  const plain = await pictureOfScene(page);
+  await session.command("entity.update", { index: 2, entity: { finish: "parquet" } });
+  await page.waitForFunction(() => window.embody.entities().some(({ index, drawn }) => index === 2 && drawn));
+  assert.ok((await difference(page, plain, await pictureOfScene(page))) > 0.03);
+  await assert.rejects(session.command("entity.update", { index: 2, entity: { finish: "velvet" } }), /must be one of plain, parquet/);
   assert.deepEqual(page.faults, []);
 });

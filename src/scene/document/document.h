@@ -76,6 +76,8 @@ struct Heading {
     physics::WorldSettings settings{.workers = 0};
     std::optional<Camera> camera;
     std::vector<Level> levels;
+    bool sky = false;
+    double time_of_day = 14;
 };
 
 template <>
@@ -85,6 +87,8 @@ inline constexpr auto fields_of<Heading> = std::tuple{
     always_saved("settings", &Heading::settings, "the world"),
     saved_when_set("camera", &Heading::camera, "to open the scene with; without, the Studio's own"),
     saved_when_set("levels", &Heading::levels, "storeys of a building, for the plan; no physics"),
+    saved_when_set("sky", &Heading::sky, "whether sun and sky are drawn; otherwise the Studio's plain light"),
+    saved_when_set("time_of_day", &Heading::time_of_day, "for sun and sky: 6 is sunrise, 18 sunset", {0, 24, "h"}),
 };
 static_assert(lists_all_members<Heading>(), "a member of Heading is in no list, or one is there twice");
 

@@ -50,6 +50,28 @@ inline constexpr auto fields_of<Pin> = std::tuple{
 };
 static_assert(lists_all_members<Pin>(), "a member of Pin is in no list, or one is there twice");
 
+/// What a surface looks like over its own colour; drawn, never felt.
+enum class Finish : std::uint8_t { plain, parquet, tiles, concrete, plaster, brick, grass, fabric };
+/// Their names in files, in the order of the values.
+inline constexpr std::array finish_names{"plain",   "parquet", "tiles", "concrete",
+                                         "plaster", "brick",   "grass", "fabric"};
+
+/// The light of a lamp, drawn about its middle.
+struct Light {
+    double lumen = 0;
+    double kelvin = 2700;
+    bool on = true;
+    friend bool operator==(const Light&, const Light&) = default;
+};
+
+template <>
+inline constexpr auto fields_of<Light> = std::tuple{
+    always_saved("lumen", &Light::lumen, "how much light it gives; 0: it is no lamp", {0, 1e6, "lm"}),
+    always_saved("kelvin", &Light::kelvin, "colour temperature: 2700 is warm, 6500 daylight", {1000, 20000, "K"}),
+    always_saved("on", &Light::on, "whether it is switched on"),
+};
+static_assert(lists_all_members<Light>(), "a member of Light is in no list, or one is there twice");
+
 /// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): geometry, attributes and pose.
 struct Entity {
     EntityIndex index = 0;
@@ -73,6 +95,8 @@ struct Entity {
     std::vector<Pin> pins;
     std::string group;  ///< "Dining/Chairs": a group within a group; empty: in none
     bool locked = false;
+    Light light;
+    Finish finish = Finish::plain;
 };
 
 template <>
@@ -102,6 +126,10 @@ inline constexpr auto fields_of<Entity> = std::tuple{
                    "the names of the groups that it is in, the outermost first, with `/` between them"),
     saved_when_set("pins", &Entity::pins, "of a thing of kind `soft`, `cloth` or `rope`: where it is held"),
     saved_when_set("locked", &Entity::locked, "whether its pose, size and existence are kept from edits by hand"),
+    saved_when_set("light", &Entity::light, "of a lamp"),
+    saved_when_set("finish", &Entity::finish,
+                   "of a primitive, over its colour: `plain`, `parquet`, `tiles`, `concrete`, `plaster`, `brick`, "
+                   "`grass` or `fabric`"),
 };
 static_assert(lists_all_members<Entity>(), "a member of Entity is in no list, or one is there twice");
 

@@ -28,6 +28,8 @@ constexpr const char* name_of<Heading> = "Heading";
 template <>
 constexpr const char* name_of<Pin> = "Pin";
 template <>
+constexpr const char* name_of<Light> = "Light";
+template <>
 constexpr const char* name_of<Entity> = "Entity";
 template <>
 constexpr const char* name_of<physics::JointLimit> = "JointLimit";
@@ -62,6 +64,7 @@ private:
     static std::string type_of(const std::uint32_t*) { return "whole"; }
     static std::string type_of(const double*) { return "number"; }
     static std::string type_of(const std::string*) { return "text"; }
+    static std::string type_of(const Finish*) { return "finish"; }
     static std::string type_of(const Vec3*) { return "vector"; }
     static std::string type_of(const Transform*) { return "transform"; }
     static std::string type_of(const Target*) { return "target"; }

@@ -366,7 +366,7 @@ export interface Commands {
   "scene.versions": [{ name?: string }, { versions: { version: string; modified: string | null }[] }];
   "scene.discard": [{ name: string }, unknown];
   "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
-  "scene.settings": [Partial<SceneSettings> & { title?: string; levels?: Level[] }, unknown];
+  "scene.settings": [Partial<SceneSettings> & Pick<Scene, "title" | "sky" | "time_of_day"> & { levels?: Level[]; merge?: string }, unknown];
   "room.add": [{ points: Vector[]; closed?: boolean; floor?: boolean; ceiling?: boolean; height?: number; thickness?: number }, { indices: number[] }];
   "entity.add": [{ entity: NewEntity; drop?: Drop }, { index: number }];
   "entity.preview": [{ entity: NewEntity; drop: Drop } | { index: number }, Placed];
@@ -432,7 +432,7 @@ export type DocumentChange =
   | { op: "entity"; entity: Entity }
   | { op: "pose"; index: number; pose: Pose }
   | { op: "entity_removed"; index: number }
-  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string; camera?: Scene["camera"] | null; levels?: Level[] } }
+  | { op: "settings"; settings: Partial<SceneSettings> & Pick<Scene, "title" | "description" | "sky" | "time_of_day"> & { camera?: Scene["camera"] | null; levels?: Level[] } }
   | { op: "joint"; joint: Joint }
   | { op: "joint_removed"; index: number }
   | { op: "action"; action: Action }

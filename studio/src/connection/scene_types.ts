@@ -69,6 +69,10 @@ export interface SlabShape {
   points: [number, number][];
 }
 
+export const FINISHES = ["plain", "parquet", "tiles", "concrete", "plaster", "brick", "grass", "fabric"] as const;
+/** What a surface looks like over its own colour. */
+export type Finish = (typeof FINISHES)[number];
+
 /** The entities that a trigger or an effect is about. */
 export type Target = "any" | { index: number } | { name: string } | { category: string };
 
@@ -134,6 +138,10 @@ export interface SceneHeading {
   camera?: Camera;
   /** storeys of a building, for the plan; no physics */
   levels?: Level[];
+  /** whether sun and sky are drawn; otherwise the Studio's plain light */
+  sky?: boolean;
+  /** for sun and sky: 6 is sunrise, 18 sunset (0 … 24 h) */
+  time_of_day?: number;
 }
 
 export interface Pin {
@@ -145,6 +153,15 @@ export interface Pin {
   to?: number;
   /** of a rope: holds its direction and twist too */
   clamped?: boolean;
+}
+
+export interface Light {
+  /** how much light it gives; 0: it is no lamp (0 … 1000000 lm) */
+  lumen: number;
+  /** colour temperature: 2700 is warm, 6500 daylight (1000 … 20000 K) */
+  kelvin: number;
+  /** whether it is switched on */
+  on: boolean;
 }
 
 export interface Entity {
@@ -188,6 +205,10 @@ export interface Entity {
   pins?: Pin[];
   /** whether its pose, size and existence are kept from edits by hand */
   locked?: boolean;
+  /** of a lamp */
+  light?: Light;
+  /** of a primitive, over its colour: `plain`, `parquet`, `tiles`, `concrete`, `plaster`, `brick`, `grass` or `fabric` */
+  finish?: Finish;
 }
 
 export interface JointLimit {

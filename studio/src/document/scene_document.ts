@@ -3,6 +3,9 @@ import type { DocumentChange, DocumentEvent, Hello } from "../connection/message
 import { Signal } from "../signal";
 import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Level, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
 
+/** The hour of the day where a scene says none. */
+const USUAL_HOUR = 14;
+
 /** Parts of the document that changed with an event. */
 export interface Changed {
   /** Another scene was opened: nothing of the last one remains. */
@@ -29,6 +32,9 @@ export class SceneDocument {
   readonly joints = new Map<number, Joint>();
   readonly actions = new Map<number, Action>();
   settings: SceneSettings = DEFAULT_SETTINGS;
+  /** Sun and sky are drawn, for this hour of the day. */
+  sky = false;
+  timeOfDay = USUAL_HOUR;
   camera: Camera | null = null;
   levels: readonly Level[] = [];
   title = "";
@@ -123,6 +129,8 @@ export class SceneDocument {
     this.levels = scene.levels ?? [];
     this.title = scene.title ?? "Untitled";
     this.description = scene.description ?? "";
+    this.sky = scene.sky ?? false;
+    this.timeOfDay = scene.time_of_day ?? USUAL_HOUR;
   }
 
   private applyChange(change: DocumentChange, changed: Changed): void {
@@ -169,10 +177,12 @@ export class SceneDocument {
     }
   }
 
-  private applySettings({ title, description, camera, levels, ...settings }: Extract<DocumentChange, { op: "settings" }>["settings"]): void {
+  private applySettings({ title, description, camera, levels, sky, time_of_day, ...settings }: Extract<DocumentChange, { op: "settings" }>["settings"]): void {
     this.settings = { ...this.settings, ...settings };
     this.title = title ?? this.title;
     this.description = description ?? this.description;
+    this.sky = sky ?? this.sky;
+    this.timeOfDay = time_of_day ?? this.timeOfDay;
     if (camera !== undefined) this.camera = camera;
     this.levels = levels ?? this.levels;
   }

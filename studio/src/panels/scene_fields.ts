@@ -6,6 +6,7 @@ import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 import { type Components, type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { foldingGroup } from "./folding";
+import { daylightGroup } from "./look_fields";
 
 /** Free fall at the surface, m/s², and density of the air there, kg/m³ (NASA, Planetary Fact Sheets). */
 const PLACES: readonly { name: string; gravity: number; air: number }[] = [
@@ -26,11 +27,13 @@ export class SceneFields {
     ...place,
     button: element("button", { class: "chip", title: `Falls with ${place.gravity} m/s², air of ${place.air} kg/m³`, "data-testid": `place-${place.name}`, onclick: () => this.goTo(place) }, place.name),
   }));
+  private readonly daylight: ReturnType<typeof daylightGroup>;
   private readonly contents = element("p", { class: "note", "data-testid": "scene-contents" });
   private readonly ground = element("span", { class: "field" });
 
   constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "selection" | "picked">) {
     const { preferences } = parts;
+    this.daylight = daylightGroup(parts);
     const vector = (name: "gravity" | "wind", label: string, unit: string, help: string) =>
       this.row(name, label, help, vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (typed) => this.setVector(name, typed)));
     const number = (name: Setting, label: string, unit: string, help: string, step?: number) =>
@@ -75,6 +78,7 @@ export class SceneFields {
         number("max_linear_speed", "Fastest speed", "m/s", "Faster things are slowed to this, and you are told"),
         number("max_angular_speed", "Fastest spin", "rad/s", "The same for turning"),
       ),
+      this.daylight.root,
       element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
     );
     parts.document.changed.on(() => this.update());
@@ -114,6 +118,7 @@ export class SceneFields {
     const [x, y, z] = scene.settings.gravity;
     for (const { button, gravity, air } of this.places) button.setAttribute("aria-pressed", String(x === 0 && z === 0 && Math.abs(y + gravity) < 0.005 && scene.settings.air_density === air));
     this.showGround();
+    this.daylight.update();
     const parts = [count(scene.entities.size, "entity", "entities"), count(scene.joints.size, "joint", "joints"), count(scene.actions.size, "action", "actions")];
     setText(this.contents, [parts.join(", "), scene.description].filter(Boolean).join(". "));
   }

@@ -10,6 +10,8 @@ import { Batch } from "./batch";
 import type { Viewer } from "./detail";
 import { averageColor, disposeDrawable, disposeGeometries, type Drawable } from "./drawable";
 import type { ModelStore } from "./model_store";
+import { setFinish } from "./finish";
+import { isOn } from "./lamps";
 import { opticsOf } from "./liquid_look";
 import { PointClouds } from "./point_clouds";
 import { drawShape, shapeKey } from "./shapes";
@@ -17,6 +19,8 @@ import { SoftBodies } from "./soft_bodies";
 import { type Quality, tintOf, type TintStrength } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
+/** A lamp that is on is brighter than what light falls on it. */
+const GLOWING = new Color(1.9, 1.8, 1.6);
 const STILL_COLOR = new Color(0.115, 0.12, 0.13);
 /** Colour of grains without a colour of their own. */
 const SAND = new Color(0.68, 0.5, 0.29);
@@ -31,12 +35,14 @@ const DOWN = new Vector3(0, -1, 0);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
-  return drawShape(entity.shape!);
+  const drawn = drawShape(entity.shape!);
+  for (const { material } of drawn.parts) setFinish(material, entity.finish);
+  return drawn;
 }
 
 /** Colours that are easy to tell apart: neighbours in the list differ in hue. */
 export function colorOf(entity: Entity): Color {
-  if (entity.model) return WHITE;
+  if (entity.model) return isOn(entity.light) ? GLOWING : WHITE;
   if (entity.color) return new Color().setRGB(...entity.color);
   if (entity.shape?.type === "plane" || entity.shape?.type === "heightfield" || entity.shape?.type === "mesh") return STILL_COLOR;
   return new Color().setHSL((entity.index * 0.381966) % 1, 0.5, 0.45);
@@ -264,7 +270,7 @@ export class EntityView {
   }
 
   private putShape(entity: Entity): void {
-    const key = shapeKey(entity.shape!);
+    const key = `${entity.finish ?? "plain"} ${shapeKey(entity.shape!)}`;
     if (this.keep(entity, key)) return;
     try {
       this.join(entity, key, () => shapeDrawable(entity));

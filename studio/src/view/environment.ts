@@ -7,12 +7,13 @@ import {
   Mesh,
   PlaneGeometry,
   PMREMGenerator,
-  type Scene,
+  Scene,
   ShaderMaterial,
   type Texture,
-  type Vector3,
+  Vector3,
   type WebGLRenderer,
 } from "three";
+import { type Daylight, daylightAt, SkyDome } from "./daylight";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import type { Quality } from "./tint";
 
@@ -22,13 +23,29 @@ const BACKGROUND: Record<Theme, number> = { dark: 0x262b33, light: 0xcdd5de };
 const GRID_COLOR: Record<Theme, number> = { dark: 0xa8b4c4, light: 0x3a4450 };
 const SHADOW_REACH_LEAST = 6;
 
-/** Light, fog and ground grid: a plain studio that does not change the models' own colours. */
+const PLAIN_SUN = new Color(0xfff4e6);
+const PLAIN_DIRECTION = new Vector3(0.45, 1, 0.6).normalize();
+/** Fractions of the sky's and the ground's colour that light things from all sides. */
+const PLAIN_SKY = new Color(0xdfe8f5);
+const PLAIN_GROUND = new Color(0x6e6a64);
+
+/** Light, fog and ground grid: a plain studio that does not change the models' own colours, or sun and sky of an hour. */
 export class Environment {
   private readonly sun = new DirectionalLight(0xfff4e6, 1.9);
   private readonly sky = new HemisphereLight(0xdfe8f5, 0x6e6a64, 0.5);
   private readonly fog = new Fog(0, 50, 200);
   private readonly grid = gridMesh();
   private reflections: Texture | null = null;
+  /** Of the sky at its hour. */
+  private skyReflections: Texture | null = null;
+  private readonly dome = new SkyDome();
+  private daylight: Daylight | null = null;
+  /** The hour that sun and sky are drawn for; null: the plain studio. */
+  hour: number | null = null;
+  private readonly direction = PLAIN_DIRECTION.clone();
+  private theme: Theme = "dark";
+  private quality: Quality = "low";
+  private sunChanged = false;
 
   constructor(
     private readonly scene: Scene,
@@ -43,24 +60,70 @@ export class Environment {
   }
 
   setTheme(theme: Theme): void {
-    this.scene.background = new Color(BACKGROUND[theme]);
-    this.fog.color.set(BACKGROUND[theme]);
+    this.theme = theme;
     (this.grid.material as ShaderMaterial).uniforms["color"]!.value.set(GRID_COLOR[theme]);
+    this.paint();
   }
 
   setQuality(quality: Quality): void {
+    this.quality = quality;
     const high = quality === "high";
     this.sun.castShadow = high;
     this.renderer.shadowMap.enabled = high;
-    if (high && !this.reflections) {
-      const generator = new PMREMGenerator(this.renderer);
-      this.reflections = generator.fromScene(new RoomEnvironment(), 0.04).texture;
-      generator.dispose();
+    this.paint();
+  }
+
+  /** Sun and sky at an hour of the day; null: the plain studio. */
+  setHour(hour: number | null): void {
+    this.hour = hour;
+    this.daylight = hour === null ? null : daylightAt(hour);
+    this.skyReflections?.dispose();
+    this.skyReflections = null;
+    this.paint();
+  }
+
+  private paint(): void {
+    const { daylight, scene } = this;
+    const high = this.quality === "high";
+    const background = daylight ? daylight.horizon : new Color(BACKGROUND[this.theme]);
+    scene.background = daylight ? null : background;
+    this.fog.color.copy(background);
+    this.dome.mesh.removeFromParent();
+    if (daylight) {
+      this.dome.show(daylight);
+      scene.add(this.dome.mesh);
     }
-    this.scene.environment = high ? this.reflections : null;
+    this.direction.copy(daylight?.direction ?? PLAIN_DIRECTION);
+    this.sunChanged = true;
+    this.sun.color.copy(daylight?.sun ?? PLAIN_SUN);
+    this.sun.intensity = daylight?.sunStrength ?? 1.9;
+    // Half of the sky's own hue: things keep their colours.
+    this.sky.color.copy(PLAIN_SKY);
+    if (daylight) this.sky.color.lerp(daylight.zenith.clone().lerp(daylight.horizon, 0.6), 0.5);
+    this.sky.groundColor.copy(PLAIN_GROUND);
+    this.sky.intensity = (high ? 0.5 : 2.1) * (daylight ? 0.85 * daylight.skyStrength : 1);
+    if (high) scene.environment = daylight ? (this.skyReflections ??= this.reflect(daylight)) : (this.reflections ??= this.generate(new RoomEnvironment()));
+    else scene.environment = null;
     // State colours look pale under strong image-based light.
-    this.scene.environmentIntensity = 0.35;
-    this.sky.intensity = high ? 0.5 : 2.1;
+    scene.environmentIntensity = daylight ? 0.3 + 0.3 * daylight.skyStrength : 0.35;
+  }
+
+  private reflect(daylight: Daylight): Texture {
+    const surroundings = new Scene();
+    const dome = new SkyDome();
+    dome.show(daylight);
+    surroundings.add(dome.mesh);
+    const texture = this.generate(surroundings);
+    dome.mesh.geometry.dispose();
+    dome.mesh.material.dispose();
+    return texture;
+  }
+
+  private generate(surroundings: Scene): Texture {
+    const generator = new PMREMGenerator(this.renderer);
+    const { texture } = generator.fromScene(surroundings, 0.04);
+    generator.dispose();
+    return texture;
   }
 
   get isGridShown(): boolean {
@@ -84,9 +147,10 @@ export class Environment {
       camera.updateProjectionMatrix();
     }
     // Shadows are kept while the centre of the view stays within a tenth of their extent.
-    const moved = resized || this.sun.target.position.distanceTo(target) > 0.1 * camera.right;
+    const moved = resized || this.sunChanged || this.sun.target.position.distanceTo(target) > 0.1 * camera.right;
     if (moved) this.sun.target.position.copy(target);
-    this.sun.position.set(0.45, 1, 0.6).normalize().multiplyScalar(4 * camera.right).add(this.sun.target.position);
+    this.sunChanged = false;
+    this.sun.position.copy(this.direction).multiplyScalar(4 * camera.right).add(this.sun.target.position);
     this.fog.near = 30 + 4 * distance;
     this.fog.far = 120 + 16 * distance;
     this.grid.position.set(Math.round(target.x), 0, Math.round(target.z));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { type Material, MeshLambertMaterial, type MeshStandardMaterial, type WebGLProgramParametersWithUniforms } from "three";
+import { addFinish, finishOf } from "./finish";
 import { BodyState } from "../document/motion";
 
 /** How strongly states are shown: not, as a faint tint of the own colour, or by the state's colour alone. */
@@ -41,17 +42,19 @@ outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(t
 export function tintable(original: Material, quality: Quality, hasRim: boolean): Material {
   const material = quality === "low" ? lambert(original as MeshStandardMaterial) : original.clone();
   const hasSurface = quality === "high" && original.userData["surfaceAtVertices"] === true;
+  const finish = finishOf(original);
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nvarying vec4 vTint;")
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;");
     if (hasSurface) addSurface(shader);
+    if (finish) addFinish(shader, finish);
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
       .replace("#include <alphatest_fragment>", MIX)
       .replace("#include <opaque_fragment>", hasRim ? RIM : "#include <opaque_fragment>");
   };
-  const key = `tint${hasRim ? " and rim" : ""}${hasSurface ? " and surface" : ""}`;
+  const key = `tint${hasRim ? " and rim" : ""}${hasSurface ? " and surface" : ""}${finish ? " and finish" : ""}`;
   material.customProgramCacheKey = () => key;
   return material;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { type Color, type Intersection, NeutralToneMapping, PCFShadowMap, type PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { Motion } from "../document/motion";
+import type { SceneDocument } from "../document/scene_document";
 import { Signal } from "../signal";
 import type { Batch } from "./batch";
 import { CameraRig } from "./camera_rig";
@@ -13,6 +14,7 @@ import { Environment, type Theme } from "./environment";
 import type { People } from "../document/people";
 import { PeopleView } from "./people_view";
 import { PinMarks } from "./pin_marks";
+import { Lamps } from "./lamps";
 import { Outline } from "./outline";
 import type { Quality } from "./tint";
 
@@ -55,6 +57,7 @@ export class View {
   readonly pins: PinMarks;
   readonly people: PeopleView;
   readonly contactShadows: ContactShadows;
+  readonly lamps: Lamps;
   /** Sent just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
   /** Sent after a picture was drawn, while it can still be read. */
@@ -96,6 +99,7 @@ export class View {
     private readonly motion: Motion,
     readonly entities: EntityView,
     people: People,
+    document: SceneDocument,
     quality: Quality,
   ) {
     // Antialiasing is the larger half of a picture's cost without a graphics card; a context cannot change it later.
@@ -110,7 +114,8 @@ export class View {
     this.pins = new PinMarks(entities.softs);
     this.people = new PeopleView(people, entities);
     this.contactShadows = new ContactShadows(entities);
-    this.scene.add(entities.group, this.contactShadows.mesh, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
+    this.lamps = new Lamps(document, entities);
+    this.scene.add(entities.group, this.contactShadows.mesh, this.lamps.group, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
     this.rig.changed.on(() => {
       entities.lookFrom(this.rig.camera.position);
       this.invalidate();
@@ -158,12 +163,19 @@ export class View {
     this.environment.setQuality(quality);
     this.entities.setQuality(quality);
     this.contactShadows.setQuality(quality);
+    this.lamps.setQuality(quality);
     this.viewer.tolerance = TOLERANCE[quality];
     this.resize();
   }
 
   setTheme(theme: Theme): void {
     this.environment.setTheme(theme);
+    this.invalidate();
+  }
+
+  /** Sun and sky at an hour of the day; null: the Studio's plain light. */
+  setHour(hour: number | null): void {
+    this.environment.setHour(hour);
     this.invalidate();
   }
 
@@ -276,6 +288,7 @@ export class View {
     this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
     const { target, distance } = this.headset ?? this.rig;
+    this.lamps.update(now, target);
     const sunMoved = this.environment.follow(target, distance, this.headset ? distance : this.rig.reach);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
     this.entities.shadowsAreOld = false;

@@ -36,6 +36,7 @@ public:
     void change(std::uint32_t& value) { value += 1 + static_cast<std::uint32_t>(random_.below(1000)); }
     void change(double& value) { value = value == 0 ? random_.between(0.1, 1) : value * random_.between(0.5, 0.9); }
     void change(std::string& value) { value += " " + std::to_string(random_.next()); }
+    void change(Finish& value) { value = value == Finish::parquet ? Finish::brick : Finish::parquet; }
     void change(Vec3& value) { value += Vec3{random_.between(0.1, 1), random_.between(-1, 1), random_.between(-1, 1)}; }
     void change(Transform& value) {
         change(value.position);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "attributes/attribute_json.h"
 #include "scene/document/document_field.h"
@@ -28,6 +29,9 @@ void write_value(json& object, const char* name, int value) { object[name] = val
 void write_value(json& object, const char* name, std::uint32_t value) { object[name] = value; }
 void write_value(json& object, const char* name, double value) { object[name] = value; }
 void write_value(json& object, const char* name, const std::string& value) { object[name] = value; }
+void write_value(json& object, const char* name, Finish value) {
+    object[name] = finish_names[static_cast<std::size_t>(value)];
+}
 void write_value(json& object, const char* name, const Vec3& value) { object[name] = vector_to_json(value); }
 void write_value(json& object, const char* name, const Transform& value) { object[name] = transform_to_json(value); }
 
@@ -46,6 +50,17 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, double
 }
 
 void read_value(FieldReader& reader, const char* name, NumberRange, std::string& value) { reader.text(name, value); }
+void read_value(FieldReader& reader, const char* name, NumberRange, Finish& value) {
+    std::string word;
+    if (!reader.text(name, word)) return;
+    const auto found = std::ranges::find(finish_names, word, [](const char* known) { return std::string_view(known); });
+    if (found == finish_names.end()) {
+        std::string known;
+        for (const char* each : finish_names) known += (known.empty() ? "" : ", ") + std::string(each);
+        return reader.refuse(name, "must be one of " + known + ", got \"" + word + "\"");
+    }
+    value = static_cast<Finish>(found - finish_names.begin());
+}
 void read_value(FieldReader& reader, const char* name, NumberRange, Vec3& value) { reader.vector(name, value); }
 void read_value(FieldReader& reader, const char* name, NumberRange, Transform& value) { reader.transform(name, value); }
 

@@ -21,6 +21,7 @@ void write_value(nlohmann::json& object, const char* name, int value);
 void write_value(nlohmann::json& object, const char* name, std::uint32_t value);
 void write_value(nlohmann::json& object, const char* name, double value);
 void write_value(nlohmann::json& object, const char* name, const std::string& value);
+void write_value(nlohmann::json& object, const char* name, Finish value);
 void write_value(nlohmann::json& object, const char* name, const Vec3& value);
 void write_value(nlohmann::json& object, const char* name, const Transform& value);
 void write_value(nlohmann::json& object, const char* name, const Target& target);
@@ -35,6 +36,7 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, int& v
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::uint32_t& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, double& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::string& value);
+void read_value(FieldReader& reader, const char* name, NumberRange range, Finish& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Vec3& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Transform& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Target& target);
