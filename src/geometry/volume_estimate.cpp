@@ -22,8 +22,8 @@ namespace {
 // decision lies at one half.
 constexpr double far_away = 2.0;
 constexpr std::uint32_t triangles_per_cluster = 8;
-constexpr double weld_tolerance = 1e-6;  // of the mesh's size
-constexpr double exact_error = 1e-6;     // single precision positions
+constexpr double weld_tolerance = 1e-6;     // of the mesh's size
+constexpr double exact_error = 1e-6;        // single precision positions
 constexpr double thinnest_enclosed = 1e-4;  // a volume below this fraction of (size · area) is a sheet
 
 // Solid angle of a triangle seen from the origin.
