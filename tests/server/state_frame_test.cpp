@@ -69,23 +69,10 @@ TEST(StateFrame, AResetSendsEverything) {
 }
 
 /// Points whose positions the test sets.
-struct SamplePoints final : scene::MovingPoints {
+struct SamplePoints final : scene::ShownPoints {
     std::vector<Vec3> at;
     void read(std::vector<Vec3>& positions) const override { positions = at; }
     [[nodiscard]] double radius() const override { return 0.01; }
-    [[nodiscard]] physics::SleepState state() const override { return physics::SleepState::active; }
-    [[nodiscard]] Vec3 linear_velocity() const override { return {}; }
-    [[nodiscard]] Vec3 center_of_mass() const override { return {}; }
-    [[nodiscard]] double mass() const override { return 1; }
-    [[nodiscard]] Bounds bounds() const override { return {}; }
-    [[nodiscard]] std::optional<double> drop_distance(double) const override { return std::nullopt; }
-    [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
-    Result<void> set_definition(const scene::PointsDefinition&) override { return {}; }
-    Result<void> move(const Transform&) override { return {}; }
-    Result<void> set_velocity(Vec3, Vec3) override { return {}; }
-    Result<void> apply_impulse(Vec3) override { return {}; }
-    Result<void> apply_force(Vec3) override { return {}; }
-    Result<void> set_enabled(bool) override { return {}; }
 };
 
 scene::EntityState pointed(scene::EntityIndex index, const SamplePoints& points, std::uint8_t state) {
