@@ -175,7 +175,7 @@ TEST_F(EveryField, OfTheDocumentIsToldUndoneAndSaved) {
     const auto settings = [](Heading& heading) -> physics::WorldSettings& { return heading.settings; };
     for_each_field<Heading>([&](const auto& field) { try_field(field, whole); });
     for_each_field<physics::WorldSettings>([&](const auto& field) { try_field(field, settings); });
-    EXPECT_EQ(count, 3 + 12);
+    EXPECT_EQ(count, 6 + 12);
 }
 
 TEST_F(EveryField, AllAtOnceAreSaved) {

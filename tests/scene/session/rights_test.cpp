@@ -63,11 +63,11 @@ TEST_F(RightsTest, WhoMayLookChangesNothingByAnyCommand) {
         }
     EXPECT_GT(refused.size(), 40u);
     const std::set<std::string> telling = {
-        "catalog.categories", "catalog.history", "catalog.model",          "catalog.search",         "catalog.stop",
-        "client.present",     "client.set_name", "client.set_rights",      "entity.attributes",      "entity.copy",
-        "entity.preview",     "hello",           "entity.collision_shape", "entity.simulation_mesh", "scene.answer",
-        "scene.list",         "scene.pick",      "scene.versions",         "simulation.listen",      "time.curves",
-        "time.marks"};
+        "entity.presets",         "entity.warnings", "catalog.categories", "catalog.history", "catalog.model",
+        "catalog.search",         "catalog.stop",    "client.present",     "client.set_name", "client.set_rights",
+        "entity.attributes",      "entity.copy",     "entity.preview",     "hello",           "entity.collision_shape",
+        "entity.simulation_mesh", "scene.answer",    "scene.list",         "scene.pick",      "scene.versions",
+        "simulation.listen",      "time.curves",     "time.marks"};
     for (const std::string& name : answered) EXPECT_TRUE(telling.contains(name)) << name << " is open to lookers";
     const json after = run("hello", json::object(), host);
     for (const char* field : {"scene", "revision", "simulation", "undo", "unsaved"})
