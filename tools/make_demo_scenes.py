@@ -167,7 +167,7 @@ def wrecking_ball() -> dict:
 def newtons_cradle(count: int = 5) -> dict:
     """Steel balls that touch, on rods without mass worth mentioning; two are lifted."""
     radius, length, lifted = 0.05, 0.5, 2
-    steel = {"mass": 4, "restitution": 1, "friction_static": 0, "friction_dynamic": 0, "linear_damping": 0, "angular_damping": 0}
+    steel = {"mass": 4, "restitution": 0.98, "friction_static": 0, "friction_dynamic": 0, "linear_damping": 0, "angular_damping": 0}
     entities = [fixed("Base", [0.5, 0.03, 0.3], [0, -0.03, 0], [0.2, 0.15, 0.12]), fixed("Bar", [0.35, 0.012, 0.012], [0, 0.68, -0.16], [0.7, 0.7, 0.72]), fixed("Bar", [0.35, 0.012, 0.012], [0, 0.68, 0.16], [0.7, 0.7, 0.72])]
     for side in (-1, 1):
         for depth in (-1, 1):

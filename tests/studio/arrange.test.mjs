@@ -246,7 +246,7 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.getByTestId("canvas").focus();
     await page.keyboard.press("Control+a");
     await page.keyboard.press("Control+Shift+g");
-    await page.waitForFunction(() => !document.querySelector("[data-group]"));
+    await page.waitForFunction(() => !document.querySelector("[data-testid=hierarchy] [data-group]"));
   });
 
   it("finds models like one of the browser", async () => {

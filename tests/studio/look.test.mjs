@@ -91,9 +91,9 @@ test("the sky follows the time of day, which is an edit that undo takes back", a
   await reaches(23);
   const night = await brightness(page, await pictureOfScene(page));
   assert.ok(night < day / 2, `${night} by night, ${day} by day`);
-  await session.command("edit.undo");
+  await page.getByTestId("edit.undo").click();
   await reaches(14);
-  await session.command("edit.undo");
+  await page.getByTestId("edit.undo").click();
   await reaches(null);
   await assert.rejects(session.command("scene.settings", { time_of_day: 25 }), /time_of_day.*24/);
   assert.deepEqual(page.faults, []);

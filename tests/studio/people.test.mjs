@@ -138,7 +138,11 @@ describe("people in a session", { timeout: 900000 }, () => {
     const begun = Date.now();
     await ben.mouse.move(canvas.x + 30, canvas.y + 30);
     await ben.mouse.down();
-    for (let step = 0; step < 120; ++step) await ben.mouse.move(canvas.x + 30 + step, canvas.y + 30);
+    // For a second at least: on a quick machine the moves alone are over before a third message is due.
+    for (let step = 0; step < 60; ++step) {
+      await ben.mouse.move(canvas.x + 30 + 2 * step, canvas.y + 30);
+      await ben.waitForTimeout(20);
+    }
     await ben.mouse.up();
     await ann.waitForTimeout(500);
     const told = await received();

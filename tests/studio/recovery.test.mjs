@@ -131,7 +131,7 @@ describe("saving and recovering", { timeout: 900000 }, () => {
     await page.waitForFunction(() => document.title.startsWith("Flat"));
     assert.ok(apart(await camera(), seen) < 0.01, "the camera is where it was");
     assert.equal(new URL(page.url()).hash, "");
-    assert.deepEqual([...new URL(page.url()).searchParams.keys()], ["quality"], "the address keeps nothing");
+    assert.deepEqual([...new URL(page.url()).searchParams.keys()], ["quality", "tour"], "the address keeps nothing");
   });
 
   it("saves versions under names and opens one", async () => {

@@ -122,7 +122,7 @@ export class AttributeRow {
     this.same = same;
     this.field.set((same ? entry.value : components) as never);
     const level = same ? entry.level : "mixed";
-    setText(this.level, level);
+    this.level.setAttribute("aria-label", level);
     this.level.dataset["level"] = level;
     this.level.title = `${LEVELS[level] ?? ""}\nClick: where the value is from`;
     if (this.root.dataset["changed"] !== String(overridden)) this.root.dataset["changed"] = String(overridden);

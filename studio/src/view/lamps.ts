@@ -8,7 +8,7 @@ import type { Quality } from "./tint";
 /** So many lamps light the scene at once: those that give most light where the user looks. Each costs time at every pixel. */
 const MOST: Record<Quality, number> = { low: 3, high: 6 };
 /** The picture's brightness of a candela at a metre: an exposure for rooms. */
-const EXPOSURE = 0.024;
+const EXPOSURE = 0.08;
 /** Eyes take the light of a room for nearly white: so much of a lamp's hue is left. */
 const HUE_LEFT = 0.6;
 const WHITE = new Color(1, 1, 1);
