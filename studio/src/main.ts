@@ -57,8 +57,9 @@ import { Pointer } from "./tools/pointer";
 import { ContactSounds } from "./tools/contact_sounds";
 import { Touches } from "./tools/touches";
 import { VrSession } from "./vr/session";
+import { t } from "./language";
 
-const canvas = element("canvas", { tabindex: 0, "aria-label": "The scene", "data-testid": "canvas" });
+const canvas = element("canvas", { tabindex: 0, "aria-label": t("The scene"), "data-testid": "canvas" });
 const scene = element("main", { id: "scene" }, canvas);
 const app = document.getElementById("app")!;
 app.append(scene);
@@ -68,7 +69,7 @@ try {
 } catch (error) {
   // Without WebGL only the reason can be shown.
   scene.replaceChildren(
-    element("div", { class: "lost", role: "alert" }, element("strong", {}, "The Studio cannot draw here"), element("p", {}, `${(error as Error).message} The browser needs WebGL 2.`)),
+    element("div", { class: "lost", role: "alert" }, element("strong", {}, t("The Studio cannot draw here")), element("p", {}, t("{{message}} The browser needs WebGL 2.", { message: (error as Error).message }))),
   );
 }
 
@@ -99,8 +100,8 @@ function start(): void {
   });
   const array = new ArrayCard(studio);
   scene.append(array.root);
-  actions.push({ id: "arrange.array", label: "Copies in rows…", group: "Arrange", keys: ["Ctrl+Shift+D"], icon: "copy", possible: () => studio.selection.indices.length > 0, run: () => array.open() });
-  actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
+  actions.push({ id: "arrange.array", label: t("Copies in rows…"), group: t("Arrange"), keys: ["Ctrl+Shift+D"], icon: "copy", possible: () => studio.selection.indices.length > 0, run: () => array.open() });
+  actions.push({ id: "view.options", label: t("View options…"), group: t("View"), keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
   const building = buildActions(build);
   actions.push(...building, ...planActions(studio), ...timeActions(studio, () => void keepPoses(studio)));
@@ -113,7 +114,7 @@ function start(): void {
   const entityFields = new EntityFields(studio);
   const attributes = new AttributeList(studio);
   const joints = new JointTool(studio, gizmo);
-  const right = element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" });
+  const right = element("aside", { class: "panel right", "aria-label": t("Properties"), "data-testid": "properties" });
   right.append(
     new ValueSearch(studio, right).root,
     new SceneFields(studio).root,
@@ -135,7 +136,7 @@ function start(): void {
   dragIn.began.on(() => layout.freeScene());
   new Touches(canvas, studio.view.rig, pointer);
   const tour = new Tour(studio, pointer.grabbed);
-  actions.push({ id: "view.tour", label: "First steps", group: "View", keys: [], run: () => tour.begin() });
+  actions.push({ id: "view.tour", label: t("First steps"), group: t("View"), keys: [], run: () => tour.begin() });
   scene.append(timeline.root, new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
   build.changed.on(() => toolbar.refresh());
   studio.view.rig.planned.on(() => toolbar.refresh());
@@ -166,8 +167,8 @@ function start(): void {
 /** Two tabs: the models of the database, and the entities of the scene; above both how far the library is filled. */
 function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy, progress: LibraryProgress): { root: HTMLElement; showModels(): void } {
   const pages = [
-    { name: "Models", root: browser.root },
-    { name: "In the scene", root: hierarchy.root },
+    { id: "Models", name: t("Models"), root: browser.root },
+    { id: "In the scene", name: t("In the scene"), root: hierarchy.root },
   ];
   const choose = (chosen: HTMLElement): void => {
     pages.forEach(({ root }, at) => {
@@ -175,11 +176,11 @@ function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy, progress: Librar
       tabs[at]!.setAttribute("aria-selected", String(root === chosen));
     });
   };
-  const tabs = pages.map(({ name, root }) => element("button", { role: "tab", "data-testid": `tab-${name}`, onclick: () => choose(root) }, name));
+  const tabs = pages.map(({ id, name, root }) => element("button", { role: "tab", "data-testid": `tab-${id}`, onclick: () => choose(root) }, name));
   choose(browser.root);
   const root = element(
     "aside",
-    { class: "panel left", "aria-label": "Models and entities" },
+    { class: "panel left", "aria-label": t("Models and entities") },
     element("div", { class: "tabs", role: "tablist" }, ...tabs),
     progress.root,
     ...pages.map((page) => page.root),

@@ -25,6 +25,7 @@ import { Framing } from "./view/framing";
 import { ModelStore } from "./view/model_store";
 import { drawsInSoftware } from "./view/software";
 import { View } from "./view/view";
+import { t, translateServerText } from "./language";
 
 /** Of a large selection only so many collision shapes are asked for. */
 const MOST_COLLISION_SHAPES = 64;
@@ -46,7 +47,7 @@ export class Studio implements Parts {
   readonly people = new People();
   readonly opening = new Opening();
   readonly warnings = new Warnings(this.server, this.document);
-  found: Found = { models: { all: true }, text: "all models" };
+  found: Found = { models: { all: true }, text: t("all models") };
   readonly motion = new Motion();
   readonly models = new ModelStore(this.connection);
   readonly entities = new EntityView(this.document, this.motion, this.models, this.connection, this.preferences.get("quality"));
@@ -113,12 +114,12 @@ export class Studio implements Parts {
       if (this.selection.has(index)) this.view.outline.show(this.selection.indices);
     });
     this.entities.surfacesLost.on((reason) => {
-      this.notices.tell({ level: "error", text: `The surfaces of liquids cannot be drawn: ${reason}`, remedy: "You see their drops instead. Reload the page to try again." });
+      this.notices.tell({ level: "error", text: t("The surfaces of liquids cannot be drawn: {{reason}}", { reason }), remedy: t("You see their drops instead. Reload the page to try again.") });
       this.view.invalidate();
     });
     this.entities.failed.on(({ index, reason }) => {
       const entity = this.document.entity(index);
-      this.notices.tell({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
+      this.notices.tell({ level: "warning", text: t("“{{name}}” cannot be drawn: {{reason}}", { name: entity?.name ?? index, reason }) });
     });
   }
 
@@ -165,7 +166,7 @@ export class Studio implements Parts {
       this.people.meet([]);
       this.server.changed.emit();
     });
-    this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
+    this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: t("Reload the page.") }));
     this.connection.event.on((event) => this.receive(event));
     this.connection.debug.on((frame) => {
       // A frame may still arrive after debug drawing was turned off.
@@ -202,7 +203,7 @@ export class Studio implements Parts {
     view.environment.showGrid(preferences.get("grid"));
     view.slow.on(() => {
       if (preferences.get("quality") === "high")
-        this.notices.tell({ level: "info", text: "Drawing is slow on this computer", remedy: "View options have “Fast drawing”: no shadows or reflections." });
+        this.notices.tell({ level: "info", text: t("Drawing is slow on this computer"), remedy: t("View options have “Fast drawing”: no shadows or reflections.") });
     });
     preferences.changed.on((name) => {
       if (name === "theme") view.setTheme(preferences.get("theme"));
@@ -226,12 +227,12 @@ export class Studio implements Parts {
     this.playback.simulation = hello.simulation;
     setBlendRate(hello.simulation.rate ?? 1);
     if (hello.take) this.take.take(hello.take);
-    const isSame = this.wasGreeted && this.document.name === hello.name && this.document.title === (hello.scene.title ?? "Untitled");
+    const isSame = this.wasGreeted && this.document.name === hello.name && this.document.title === (hello.scene.title ?? t("Untitled"));
     this.wasGreeted = true;
     this.document.reset(hello);
     // After a lost connection the user goes on where they were.
     if (!isSame) this.framing.open();
-    if (hello.waiting?.length) this.notices.tell({ level: "info", text: waitingText(hello.waiting.length), remedy: "They appear when these are imported." });
+    if (hello.waiting?.length) this.notices.tell({ level: "info", text: waitingText(hello.waiting.length), remedy: t("They appear when these are imported.") });
     this.retint();
     this.meetPeople(hello);
     this.server.changed.emit();
@@ -254,12 +255,12 @@ export class Studio implements Parts {
     this.server.catalogChanged.emit(event);
     if (event.client !== this.server.client) {
       const who = event.session.replace(/^studio: /, "");
-      const action = { label: "History", run: () => this.historyWanted.emit() };
-      this.notices.tell({ level: "info", text: `${pastOf(event.label)}, by ${who}`, action });
+      const action = { label: t("History"), run: () => this.historyWanted.emit() };
+      this.notices.tell({ level: "info", text: t("{{what}}, by {{who}}", { what: pastOf(event.label), who }), action });
       return;
     }
     const undone = event.command === "undo";
-    const action = { label: undone ? "Redo" : "Undo", run: () => void this.server.command("catalog.undo", { batch: event.batch }) };
+    const action = { label: undone ? t("Redo") : t("Undo"), run: () => void this.server.command("catalog.undo", { batch: event.batch }) };
     this.notices.tell({ level: "info", text: pastOf(event.label), action });
   }
 
@@ -292,7 +293,7 @@ export class Studio implements Parts {
         this.playback.measured.emit();
         break;
       case "message":
-        this.notices.tell(event);
+        this.notices.tell({ ...event, text: translateServerText(event.text) });
         break;
       case "catalog":
         this.takeCatalog(event);
@@ -382,10 +383,10 @@ export class Studio implements Parts {
 }
 
 function waitingText(count: number): string {
-  return `${count === 1 ? "1 thing waits for its model" : `${count.toLocaleString("en")} things wait for their models`}, which the database does not have yet.`;
+  return t("{{count, number}} things wait for their models, which the database does not have yet.", { count });
 }
 
 /** The label of an undo step in the past tense. */
 function pastOf(label: string): string {
-  return label.replace(/^Take back /, "Took back ").replace(/^Set /, "Changed ");
+  return translateServerText(label.replace(/^Take back /, "Took back ").replace(/^Set /, "Changed "));
 }

@@ -4,6 +4,7 @@ import type { DebugFrame } from "./debug_frame";
 import type { Frame } from "./frame";
 import type { Commands, ServerError, ServerEvent } from "./messages";
 import type { FromWorker, ToWorker } from "./socket_worker";
+import { t, translateServerText } from "../language";
 
 /** A command that the server refused; `where`, `why` and `remedy` are for the user. */
 export class CommandRefused extends Error {
@@ -15,7 +16,7 @@ export class CommandRefused extends Error {
 /** The command was not carried out because there is no connection. */
 export class NotConnected extends Error {
   constructor() {
-    super("The server cannot be reached.");
+    super(t("The server cannot be reached."));
   }
 }
 
@@ -23,7 +24,8 @@ export class NotConnected extends Error {
 export function reasonText(error: Error): string {
   if (!(error instanceof CommandRefused)) return error.message;
   const { why, remedy } = error.error;
-  return remedy ? `${why}. ${remedy}` : why;
+  const told = translateServerText(why);
+  return remedy ? t("{{why}}. {{remedy}}", { why: told, remedy: translateServerText(remedy) }) : told;
 }
 
 /** So many commands are under way at most; the others wait here, in order, so that hundreds at once flood neither socket nor server. */
@@ -127,6 +129,6 @@ export class Connection {
     this.waiting.delete(message.id ?? 0);
     this.sendQueued();
     if (message.ok) waiting?.resolve(message.result!);
-    else waiting?.reject(new CommandRefused(message.error ?? { where: "", why: "The server gave no reason.", remedy: "" }));
+    else waiting?.reject(new CommandRefused(message.error ?? { where: "", why: t("The server gave no reason."), remedy: "" }));
   }
 }

@@ -2,6 +2,7 @@
 import { Signal } from "../signal";
 import { CommandRefused, NotConnected } from "./connection";
 import type { ServerError } from "./messages";
+import { t, translatedWord, translateServerText } from "../language";
 
 export interface Notice {
   level: "info" | "warning" | "error";
@@ -23,12 +24,12 @@ export class Notices {
   report(error: Error): void {
     if (error instanceof CommandRefused) this.tell(noticeOf(error.error));
     else if (error instanceof NotConnected)
-      this.tell({ level: "error", text: "Not connected to the server", remedy: "Your change was not carried out; try again once connected." });
+      this.tell({ level: "error", text: t("Not connected to the server"), remedy: t("Your change was not carried out; try again once connected.") });
     else this.tell({ level: "error", text: error.message });
   }
 }
 
 function noticeOf(error: ServerError): Notice {
-  const text = error.where ? `${error.where}: ${error.why}` : error.why;
-  return { level: "error", text, remedy: error.remedy };
+  const text = error.where ? `${translatedWord(error.where)}: ${translateServerText(error.why)}` : translateServerText(error.why);
+  return { level: "error", text, remedy: translateServerText(error.remedy) };
 }

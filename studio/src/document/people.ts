@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { Member, Presence, Rights } from "../connection/messages";
 import { Signal } from "../signal";
+import { t } from "../language";
 
 /** A page that the server has not greeted yet sends nothing; it need not look as if it might not. */
 const ALL: Rights = { edit: true, run: true, invite: true };
@@ -69,14 +70,14 @@ export class People {
 
 /** The name to show for a member. */
 export function memberName({ name, client }: Member): string {
-  return name || `Guest ${client}`;
+  return name || t("Guest {{client}}", { client });
 }
 
 /** For people: what somebody with these rights may do. */
 export function rightsText({ edit, run }: Pick<Rights, "edit" | "run">): string {
-  if (edit && run) return "build and play";
-  if (edit) return "build, not play";
-  return run ? "look and play" : "look";
+  if (edit && run) return t("build and play");
+  if (edit) return t("build, not play");
+  return run ? t("look and play") : t("look");
 }
 
 /** One or two letters for a name: Ann → A, Ben Smith → BS, Guest 3 → G3. */

@@ -4,6 +4,7 @@ import { Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
 import type { Entity, Pin, Vector } from "../connection/scene_types";
 import { rotationOf } from "./scene_document";
+import { t } from "../language";
 
 /** Number of pins along each side of an edge or a face. */
 const ALONG_AN_EDGE = 17;
@@ -14,12 +15,12 @@ const RADIUS = 0.01;
 export type PinPlace = "corners" | "edge" | "ends" | "end" | "top" | "bottom";
 
 export const PLACE_LABELS: Record<PinPlace, string> = {
-  corners: "Corners",
-  edge: "Upper edge",
-  ends: "Both ends",
-  end: "One end",
-  top: "Top",
-  bottom: "Bottom",
+  corners: t("Corners"),
+  edge: t("Upper edge"),
+  ends: t("Both ends"),
+  end: t("One end"),
+  top: t("Top"),
+  bottom: t("Bottom"),
 };
 
 /** The places that an entity offers to pin. */

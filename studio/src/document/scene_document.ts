@@ -2,6 +2,7 @@
 import type { DocumentChange, DocumentEvent, Hello } from "../connection/messages";
 import { Signal } from "../signal";
 import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Level, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
+import { t, translateServerText } from "../language";
 
 /** The hour of the day where a scene says none. */
 const USUAL_HOUR = 14;
@@ -127,7 +128,7 @@ export class SceneDocument {
     this.settings = { ...DEFAULT_SETTINGS, ...scene.settings };
     this.camera = scene.camera ?? null;
     this.levels = scene.levels ?? [];
-    this.title = scene.title ?? "Untitled";
+    this.title = scene.title ?? t("Untitled");
     this.description = scene.description ?? "";
     this.sky = scene.sky ?? false;
     this.timeOfDay = scene.time_of_day ?? USUAL_HOUR;
@@ -204,5 +205,5 @@ export function rotationOf(pose: Pose | undefined): Quaternion {
 export function nameOf(entity: Entity): string {
   if (entity.name) return entity.name;
   const kind = entity.shape?.type ?? "model";
-  return `${kind[0]!.toUpperCase()}${kind.slice(1)} ${entity.index}`;
+  return `${translateServerText(`${kind[0]!.toUpperCase()}${kind.slice(1)}`)} ${entity.index}`;
 }

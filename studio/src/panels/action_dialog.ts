@@ -12,24 +12,25 @@ import { fieldFor } from "./attribute_row";
 import { dialogButtons, openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 import { numberField, textField, truthField, vectorField } from "./fields";
+import { t, translateServerText } from "../language";
 
 const TRIGGERS: readonly { type: Trigger["type"]; label: string; make: (near: Box) => Trigger }[] = [
-  { type: "signal", label: "a key or button is pressed", make: () => ({ type: "signal", key: "K" }) },
-  { type: "time", label: "some time has passed", make: () => ({ type: "time", time: 1 }) },
-  { type: "contact_begin", label: "something is touched", make: () => ({ type: "contact_begin" }) },
-  { type: "contact_end", label: "something is no longer touched", make: () => ({ type: "contact_end" }) },
-  { type: "enter_volume", label: "something comes into a box", make: (near) => ({ type: "enter_volume", ...near }) },
-  { type: "fall_asleep", label: "something comes to rest", make: () => ({ type: "fall_asleep" }) },
+  { type: "signal", label: t("a key or button is pressed"), make: () => ({ type: "signal", key: "K" }) },
+  { type: "time", label: t("some time has passed"), make: () => ({ type: "time", time: 1 }) },
+  { type: "contact_begin", label: t("something is touched"), make: () => ({ type: "contact_begin" }) },
+  { type: "contact_end", label: t("something is no longer touched"), make: () => ({ type: "contact_end" }) },
+  { type: "enter_volume", label: t("something comes into a box"), make: (near) => ({ type: "enter_volume", ...near }) },
+  { type: "fall_asleep", label: t("something comes to rest"), make: () => ({ type: "fall_asleep" }) },
 ];
 const EFFECTS: readonly { type: Effect["type"]; label: string; make: (near: Box) => Effect }[] = [
-  { type: "apply_impulse", label: "give a push", make: () => ({ type: "apply_impulse", impulse: [0, 5, 0] }) },
-  { type: "apply_force", label: "push for a while", make: () => ({ type: "apply_force", force: [0, 50, 0], duration: 1 }) },
-  { type: "set_velocity", label: "set the velocity", make: () => ({ type: "set_velocity", linear: [0, 3, 0] }) },
-  { type: "set_attribute", label: "change a value", make: () => ({ type: "set_attribute", name: "mass", value: 1 }) },
-  { type: "spawn", label: "add a copy", make: ({ upper, lower }) => ({ type: "spawn", pose: { position: [(lower[0] + upper[0]) / 2, upper[1] + 1, (lower[2] + upper[2]) / 2] } }) },
-  { type: "remove", label: "remove", make: () => ({ type: "remove" }) },
-  { type: "set_enabled", label: "switch on or off", make: () => ({ type: "set_enabled", enabled: false }) },
-  { type: "pause", label: "pause the simulation", make: () => ({ type: "pause" }) },
+  { type: "apply_impulse", label: t("give a push"), make: () => ({ type: "apply_impulse", impulse: [0, 5, 0] }) },
+  { type: "apply_force", label: t("push for a while"), make: () => ({ type: "apply_force", force: [0, 50, 0], duration: 1 }) },
+  { type: "set_velocity", label: t("set the velocity"), make: () => ({ type: "set_velocity", linear: [0, 3, 0] }) },
+  { type: "set_attribute", label: t("change a value"), make: () => ({ type: "set_attribute", name: "mass", value: 1 }) },
+  { type: "spawn", label: t("add a copy"), make: ({ upper, lower }) => ({ type: "spawn", pose: { position: [(lower[0] + upper[0]) / 2, upper[1] + 1, (lower[2] + upper[2]) / 2] } }) },
+  { type: "remove", label: t("remove"), make: () => ({ type: "remove" }) },
+  { type: "set_enabled", label: t("switch on or off"), make: () => ({ type: "set_enabled", enabled: false }) },
+  { type: "pause", label: t("pause the simulation"), make: () => ({ type: "pause" }) },
 ];
 const ANY = "any";
 /** In a large scene only so many entities are offered. */
@@ -79,29 +80,29 @@ class ActionDialog {
       const { id: _, ...rest } = structuredClone(known);
       this.draft = rest;
     } else this.draft = firstAction(parts);
-    const name = textField("Name of the action", (text) => this.put({ name: text }), "no name");
+    const name = textField(t("Name of the action"), (text) => this.put({ name: text }), t("no name"));
     name.set(this.draft.name ?? "");
-    const once = truthField("Only once in a run", (value) => this.put({ once: value }));
+    const once = truthField(t("Only once in a run"), (value) => this.put({ once: value }));
     once.set(this.draft.once ?? !this.repeats());
     show(this.error, false);
     this.dialog = openDialog(
-      known ? "Change an action" : "A new action",
+      known ? t("Change an action") : t("A new action"),
       "action-dialog",
       element(
         "div",
         { class: "action-editor" },
-        labelled("Name", name.root),
-        element("h3", {}, "When"),
+        labelled(t("Name"), name.root),
+        element("h3", {}, t("When")),
         this.whenBox,
-        element("h3", {}, "Then"),
+        element("h3", {}, t("Then")),
         this.thenBox,
-        labelled("Only once in a run", once.root),
+        labelled(t("Only once in a run"), once.root),
         this.sentence,
         this.error,
       ),
       dialogButtons(
-        element("button", { onclick: () => this.dialog.close() }, "Cancel"),
-        element("button", { class: "primary", "data-testid": "action-save", onclick: () => void this.save() }, known ? "Change" : "Add"),
+        element("button", { onclick: () => this.dialog.close() }, t("Cancel")),
+        element("button", { class: "primary", "data-testid": "action-save", onclick: () => void this.save() }, known ? t("Change") : t("Add")),
       ),
     );
     this.buildWhen();
@@ -122,7 +123,7 @@ class ActionDialog {
 
   private called(index: number): string {
     const entity = this.parts.document.entity(index);
-    return entity ? nameOf(entity) : `entity ${index}`;
+    return entity ? nameOf(entity) : t("entity {{index}}", { index });
   }
 
   private buildWhen(): void {
@@ -130,18 +131,18 @@ class ActionDialog {
     const near = nearSelection(this.parts);
     const change = (fields: object): void => this.put({ trigger: { ...this.draft.trigger, ...fields } as Trigger });
     const rows: HTMLElement[] = [
-      picker("When", "trigger", TRIGGERS.map(({ type, label }) => [type, label]), trigger.type, (type) => {
+      picker(t("When"), "trigger", TRIGGERS.map(({ type, label }) => [type, label]), trigger.type, (type) => {
         this.put({ trigger: TRIGGERS.find((each) => each.type === type)!.make(near), ...(isCaused({ type } as Trigger) ? {} : { sender: "any" }) });
         this.buildWhen();
         this.buildThen();
       }),
     ];
-    if (isCaused(trigger)) rows.push(labelled("Who", this.target("Who sets it off", "anything", sender, (chosen) => this.put({ sender: chosen }))));
+    if (isCaused(trigger)) rows.push(labelled(t("Who"), this.target(t("Who sets it off"), t("anything"), sender, (chosen) => this.put({ sender: chosen }))));
     switch (trigger.type) {
       case "signal": {
-        const key = element("input", { type: "text", readonly: true, class: "key-field", "aria-label": "Key", "data-testid": "action-key", title: "Click here, then press the key" });
+        const key = element("input", { type: "text", readonly: true, class: "key-field", "aria-label": t("Key"), "data-testid": "action-key", title: t("Click here, then press the key") });
         key.value = trigger.key ?? "";
-        key.placeholder = "press a key";
+        key.placeholder = t("press a key");
         key.addEventListener("keydown", (event) => {
           if (["Tab", "Escape", "Shift", "Control", "Alt", "Meta"].includes(event.key)) return;
           event.preventDefault();
@@ -149,33 +150,33 @@ class ActionDialog {
           button.set("");
           change({ key: key.value, button: undefined });
         });
-        const button = textField("Button of the page", (text) => {
+        const button = textField(t("Button of the page"), (text) => {
           key.value = "";
           change({ button: text, key: undefined });
         });
         button.set(trigger.button ?? "");
-        rows.push(labelled("Key", element("span", { class: "field" }, key)), labelled("or a button called", button.root));
+        rows.push(labelled(t("Key"), element("span", { class: "field" }, key)), labelled(t("or a button called"), button.root));
         break;
       }
       case "time": {
-        const time = numberField("After", "s", (value) => change({ time: value }));
+        const time = numberField(t("After"), "s", (value) => change({ time: value }));
         time.set(trigger.time ?? 0);
-        const every = numberField("Then every", "s", (value) => change({ repeat_every: value > 0 ? value : undefined }));
+        const every = numberField(t("Then every"), "s", (value) => change({ repeat_every: value > 0 ? value : undefined }));
         every.set(trigger.repeat_every ?? 0);
-        rows.push(labelled("After", time.root), labelled("Then every", every.root, "0: not again"));
+        rows.push(labelled(t("After"), time.root), labelled(t("Then every"), every.root, t("0: not again")));
         break;
       }
       case "contact_begin":
       case "contact_end":
-        rows.push(labelled("Whom", this.target("What it touches", "anything", trigger.other, (other) => change({ other }))));
+        rows.push(labelled(t("Whom"), this.target(t("What it touches"), t("anything"), trigger.other, (other) => change({ other }))));
         if (trigger.type === "contact_begin") {
-          const speed = numberField("With at least", "m/s", (value) => change({ least_approach_speed: value }));
+          const speed = numberField(t("With at least"), "m/s", (value) => change({ least_approach_speed: value }));
           speed.set(trigger.least_approach_speed ?? 0);
-          rows.push(labelled("With at least", speed.root));
+          rows.push(labelled(t("With at least"), speed.root));
         }
         break;
       case "enter_volume":
-        for (const [corner, label] of [["lower", "Lowest corner"], ["upper", "Highest corner"]] as const) {
+        for (const [corner, label] of [["lower", t("Lowest corner")], ["upper", t("Highest corner")]] as const) {
           const field = vectorField([`${label} x`, `${label} y`, `${label} z`], "m", (typed) => {
             const now = this.draft.trigger as Extract<Trigger, { type: "enter_volume" }>;
             change({ [corner]: withTyped(now[corner], typed) });
@@ -206,7 +207,7 @@ class ActionDialog {
       return labelled(label, field.root);
     };
     const rows: HTMLElement[] = [
-      picker("Then", "effect", EFFECTS.map(({ type, label }) => [type, label]), effect.type, (type) => {
+      picker(t("Then"), "effect", EFFECTS.map(({ type, label }) => [type, label]), effect.type, (type) => {
         this.put({ effect: EFFECTS.find((each) => each.type === type)!.make(near) });
         this.buildThen();
         void this.loadValues();
@@ -215,8 +216,8 @@ class ActionDialog {
     if (effect.type !== "pause")
       rows.push(
         labelled(
-          effect.type === "spawn" ? "Of what" : "Whom",
-          this.target("Who is changed", isCaused(trigger) ? "who set it off" : "everything", receiver, (chosen) => {
+          effect.type === "spawn" ? t("Of what") : t("Whom"),
+          this.target(t("Who is changed"), isCaused(trigger) ? t("who set it off") : t("everything"), receiver, (chosen) => {
             this.put({ receiver: chosen });
             void this.loadValues();
           }),
@@ -224,35 +225,35 @@ class ActionDialog {
       );
     switch (effect.type) {
       case "apply_impulse":
-        rows.push(vector("impulse", "Push", "N s", effect.impulse));
+        rows.push(vector("impulse", t("Push"), "N s", effect.impulse));
         break;
       case "apply_force": {
-        const duration = numberField("For", "s", (value) => change({ duration: value }));
+        const duration = numberField(t("For", { context: "time" }), "s", (value) => change({ duration: value }));
         duration.set(effect.duration ?? 0);
-        rows.push(vector("force", "Force", "N", effect.force), labelled("For", duration.root));
+        rows.push(vector("force", t("Force"), "N", effect.force), labelled(t("For", { context: "time" }), duration.root));
         break;
       }
       case "set_velocity":
-        rows.push(vector("linear", "Velocity", "m/s", effect.linear), vector("angular", "Spin", "rad/s", effect.angular));
+        rows.push(vector("linear", t("Velocity"), "m/s", effect.linear), vector("angular", t("Spin"), "rad/s", effect.angular));
         break;
       case "set_attribute":
         rows.push(...this.valueRows(effect, change));
         break;
       case "spawn": {
         let position = positionOf(effect.pose);
-        const at = vectorField(["Place x", "Place y", "Place z"], "m", (typed) => {
+        const at = vectorField([t("Place x"), t("Place y"), t("Place z")], "m", (typed) => {
           position = withTyped(position, typed) as Vector;
           at.set(position);
           change({ pose: { ...effect.pose, position } });
         });
         at.set(position);
-        rows.push(labelled("Place", at.root), vector("linear_velocity", "Velocity", "m/s", effect.linear_velocity));
+        rows.push(labelled(t("Place"), at.root), vector("linear_velocity", t("Velocity"), "m/s", effect.linear_velocity));
         break;
       }
       case "set_enabled": {
-        const on = truthField("Switch on", (enabled) => change({ enabled }));
+        const on = truthField(t("Switch on"), (enabled) => change({ enabled }));
         on.set(effect.enabled ?? true);
-        rows.push(labelled("Switch on", on.root, "Off: it neither moves nor collides"));
+        rows.push(labelled(t("Switch on"), on.root, t("Off: it neither moves nor collides")));
         break;
       }
       case "remove":
@@ -266,10 +267,10 @@ class ActionDialog {
   /** Which value, and what it becomes; by the values of who is changed. */
   private valueRows(effect: Extract<Effect, { type: "set_attribute" }>, change: (fields: object) => void): HTMLElement[] {
     const known = this.values.find(({ name }) => name === effect.name);
-    const options = this.values.map(({ name, label }): [string, string] => [name, label]);
+    const options = this.values.map(({ name, label }): [string, string] => [name, translateServerText(label)]);
     if (!known) options.push([effect.name, effect.name.replaceAll("_", " ")]);
     const rows = [
-      picker("Which value", "action-value", options, effect.name, (name) => {
+      picker(t("Which value"), "action-value", options, effect.name, (name) => {
         change({ name, value: this.values.find((each) => each.name === name)?.value });
         this.buildThen();
       }),
@@ -277,7 +278,7 @@ class ActionDialog {
     if (!known) return rows;
     const field = fieldFor(known, (value) => change({ value }));
     field.set(effect.value as never);
-    return [...rows, labelled("becomes", field.root)];
+    return [...rows, labelled(t("becomes"), field.root)];
   }
 
   private async loadValues(): Promise<void> {
@@ -298,7 +299,7 @@ class ActionDialog {
     const text = value === undefined || value === "any" ? ANY : JSON.stringify(value);
     const options: [string, string][] = [
       [ANY, any],
-      ...categories.map((category): [string, string] => [JSON.stringify({ category }), `any ${category}`]),
+      ...categories.map((category): [string, string] => [JSON.stringify({ category }), t("any {{category}}", { category: translateServerText(category) })]),
       ...[...entities.values()].slice(0, MOST_OFFERED).map((entity): [string, string] => [JSON.stringify({ index: entity.index }), nameOf(entity)]),
     ];
     if (!options.some(([each]) => each === text)) options.push([text, typeof value === "object" && "name" in value ? `“${value.name}”` : typeof value === "object" && "index" in value ? this.called(value.index) : text]);

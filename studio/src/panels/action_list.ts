@@ -7,6 +7,7 @@ import { type ActionParts, openAction } from "./action_dialog";
 import { actionText, isCaused } from "./action_text";
 import { element, setText, show } from "./element";
 import { foldingGroup } from "./folding";
+import { t } from "../language";
 
 const MOST = 200;
 
@@ -15,12 +16,12 @@ export class ActionList {
   readonly root: HTMLElement;
   private readonly list = element("ul", { class: "plain-list", "data-testid": "actions" });
   private readonly group: HTMLDetailsElement;
-  private readonly advice = element("p", { class: "note" }, "Nothing happens by itself yet: add a sentence.");
+  private readonly advice = element("p", { class: "note" }, t("Nothing happens by itself yet: add a sentence."));
 
   constructor(private readonly parts: ActionParts & Pick<Parts, "preferences" | "notices" | "playback" | "picked">) {
-    const add = element("button", { class: "chip", "data-testid": "add-action", onclick: () => openAction(parts) }, "Add “When … then …”");
-    this.group = foldingGroup(parts.preferences, "actions", "Actions", false, this.advice, this.list, element("div", { class: "preset-chips" }, add));
-    this.root = element("section", { class: "entity", "data-testid": "action-fields", "aria-label": "Actions" }, this.group);
+    const add = element("button", { class: "chip", "data-testid": "add-action", onclick: () => openAction(parts) }, t("Add “When … then …”"));
+    this.group = foldingGroup(parts.preferences, "actions", t("Actions"), false, this.advice, this.list, element("div", { class: "preset-chips" }, add));
+    this.root = element("section", { class: "entity", "data-testid": "action-fields", "aria-label": t("Actions") }, this.group);
     parts.selection.changed.on(() => this.update());
     parts.picked.changed.on(() => this.update());
     parts.document.changed.on(({ all, actions, entities, removed }) => (all || actions || entities.length + removed.length > 0) && this.update());
@@ -32,9 +33,9 @@ export class ActionList {
     const all = [...document.actions.values()].sort((a, b) => a.id - b.id);
     const shown = selection.indices.length === 0 ? all : all.filter((action) => this.concerns(action));
     show(this.root, !picked.model);
-    setText(this.group.querySelector("summary")!, shown.length > 0 ? `Actions (${shown.length})` : "Actions");
+    setText(this.group.querySelector("summary")!, shown.length > 0 ? t("Actions ({{number}})", { number: shown.length }) : t("Actions"));
     show(this.advice, shown.length === 0);
-    this.list.replaceChildren(...shown.slice(0, MOST).map((action) => this.row(action, all)), ...(shown.length > MOST ? [element("li", { class: "note" }, `… and ${shown.length - MOST} more`)] : []));
+    this.list.replaceChildren(...shown.slice(0, MOST).map((action) => this.row(action, all)), ...(shown.length > MOST ? [element("li", { class: "note" }, t("… and {{number}} more", { number: shown.length - MOST }))] : []));
   }
 
   /** Whether something selected sets it off or is changed by it. */
@@ -56,12 +57,12 @@ export class ActionList {
     const place = all.findIndex(({ id }) => id === index) + 1;
     const text = actionText(action, (other) => {
       const entity = this.parts.document.entity(other);
-      return entity ? nameOf(entity) : `entity ${other}`;
+      return entity ? nameOf(entity) : t("entity {{other}}", { other });
     });
     const box = element("input", {
       type: "checkbox",
-      title: enabled ? "Happens. Click: it does not" : "Does not happen. Click: it does",
-      "aria-label": `Enabled: ${name || text}`,
+      title: enabled ? t("Happens. Click: it does not") : t("Does not happen. Click: it does"),
+      "aria-label": t("Enabled: {{name}}", { name: name || text }),
       "data-testid": `action-enabled-${index}`,
       onchange: () => void server.command("action.update", { index, action: { enabled: box.checked } }),
     });
@@ -71,14 +72,14 @@ export class ActionList {
     return element(
       "li",
       { class: enabled ? "" : "disabled" },
-      element("div", { class: "list-head" }, box, element("button", { class: "list-title", title: "Change it", "data-testid": `action-${index}`, onclick: () => openAction(this.parts, action) }, ...(name ? [element("strong", {}, name)] : []), element("span", {}, text))),
+      element("div", { class: "list-head" }, box, element("button", { class: "list-title", title: t("Change it"), "data-testid": `action-${index}`, onclick: () => openAction(this.parts, action) }, ...(name ? [element("strong", {}, name)] : []), element("span", {}, text))),
       element(
         "div",
         { class: "list-buttons" },
-        button("Try it now", "action-test", icon("play"), false, () => void this.test(action)),
-        button("Earlier", "action-up", icon("up"), place === 1, () => void server.command("action.move", { index, place: place - 1 })),
-        button("Later", "action-down", icon("down"), place === all.length, () => void server.command("action.move", { index, place: place + 1 })),
-        button("Delete", "action-delete", icon("bin"), false, () => void server.command("action.remove", { index })),
+        button(t("Try it now"), "action-test", icon("play"), false, () => void this.test(action)),
+        button(t("Earlier"), "action-up", icon("up"), place === 1, () => void server.command("action.move", { index, place: place - 1 })),
+        button(t("Later"), "action-down", icon("down"), place === all.length, () => void server.command("action.move", { index, place: place + 1 })),
+        button(t("Delete"), "action-delete", icon("bin"), false, () => void server.command("action.remove", { index })),
       ),
     );
   }

@@ -2,6 +2,8 @@
 // Actions as sentences: “When K is pressed, then give Ball a push of 5 N s.”
 import type { Action, Effect, Target, Trigger, Vector } from "../connection/scene_types";
 import { numberText } from "./number_text";
+import { wordText } from "./words";
+import { t, translateServerText } from "../language";
 
 export type Namer = (index: number) => string;
 
@@ -9,7 +11,7 @@ export type Namer = (index: number) => string;
 export function targetText(target: Target | undefined, called: Namer, any: string): string {
   if (target === undefined || target === "any") return any;
   if ("index" in target) return called(target.index);
-  return "name" in target ? `“${target.name}”` : `any ${target.category}`;
+  return "name" in target ? `“${target.name}”` : t("any {{category}}", { category: translateServerText(target.category) });
 }
 
 function sizeText(vector: Vector, unit: string): string {
@@ -17,42 +19,48 @@ function sizeText(vector: Vector, unit: string): string {
 }
 
 export function whenText(trigger: Trigger, sender: Target | undefined, called: Namer): string {
-  const who = targetText(sender, called, "anything");
+  const who = targetText(sender, called, t("anything"));
   switch (trigger.type) {
     case "signal":
-      return trigger.key ? `${trigger.key} is pressed` : `the button “${trigger.button ?? ""}” is pressed`;
+      return trigger.key ? t("{{key}} is pressed", { key: trigger.key }) : t("the button “{{button}}” is pressed", { button: trigger.button ?? "" });
     case "time":
-      return `${numberText(trigger.time ?? 0)} s have passed${trigger.repeat_every ? `, and every ${numberText(trigger.repeat_every)} s after that` : ""}`;
+      return trigger.repeat_every
+        ? t("{{time}} s have passed, and every {{every}} s after that", { time: numberText(trigger.time ?? 0), every: numberText(trigger.repeat_every) })
+        : t("{{time}} s have passed", { time: numberText(trigger.time ?? 0) });
     case "contact_begin":
-      return `${who} touches ${targetText(trigger.other, called, "anything")}${trigger.least_approach_speed ? ` with ${numberText(trigger.least_approach_speed)} m/s or more` : ""}`;
+      return trigger.least_approach_speed
+        ? t("{{who}} touches {{other}} with {{speed}} m/s or more", { who, other: targetText(trigger.other, called, t("anything")), speed: numberText(trigger.least_approach_speed) })
+        : t("{{who}} touches {{other}}", { who, other: targetText(trigger.other, called, t("anything")) });
     case "contact_end":
-      return `${who} no longer touches ${targetText(trigger.other, called, "anything")}`;
+      return t("{{who}} no longer touches {{other}}", { who, other: targetText(trigger.other, called, t("anything")) });
     case "enter_volume":
-      return `${who} comes into the box at ${trigger.lower.map((lower, axis) => numberText(Number(((lower + trigger.upper[axis]!) / 2).toPrecision(3)))).join(", ")}`;
+      return t("{{who}} comes into the box at {{place}}", { who, place: trigger.lower.map((lower, axis) => numberText(Number(((lower + trigger.upper[axis]!) / 2).toPrecision(3)))).join(", ") });
     case "fall_asleep":
-      return `${who} comes to rest`;
+      return t("{{who}} comes to rest", { who });
   }
 }
 
 export function thenText(effect: Effect, receiver: Target | undefined, isCaused: boolean, called: Namer): string {
-  const whom = targetText(receiver, called, isCaused ? "it" : "everything");
+  const whom = targetText(receiver, called, isCaused ? t("it") : t("everything"));
   switch (effect.type) {
     case "apply_impulse":
-      return `give ${whom} a push of ${sizeText(effect.impulse, "N s")}`;
+      return t("give {{whom}} a push of {{impulse}}", { whom, impulse: sizeText(effect.impulse, "N s") });
     case "apply_force":
-      return `push ${whom} with ${sizeText(effect.force, "N")}${effect.duration ? ` for ${numberText(effect.duration)} s` : " once"}`;
+      return effect.duration
+        ? t("push {{whom}} with {{force}} for {{duration}} s", { whom, force: sizeText(effect.force, "N"), duration: numberText(effect.duration) })
+        : t("push {{whom}} with {{force}} once", { whom, force: sizeText(effect.force, "N") });
     case "set_velocity":
-      return `let ${whom} move with ${sizeText(effect.linear ?? [0, 0, 0], "m/s")}`;
+      return t("let {{whom}} move with {{speed}}", { whom, speed: sizeText(effect.linear ?? [0, 0, 0], "m/s") });
     case "set_attribute":
-      return `set ${effect.name.replaceAll("_", " ")} of ${whom} to ${typeof effect.value === "number" ? numberText(effect.value) : String(effect.value).replaceAll("_", " ")}`;
+      return t("set {{name}} of {{whom}} to {{value}}", { name: wordText(effect.name), whom, value: typeof effect.value === "number" ? numberText(effect.value) : wordText(String(effect.value)) });
     case "spawn":
-      return `add a copy of ${whom}`;
+      return t("add a copy of {{whom}}", { whom });
     case "remove":
-      return `remove ${whom}`;
+      return t("remove {{whom}}", { whom });
     case "set_enabled":
-      return effect.enabled === false ? `switch ${whom} off` : `switch ${whom} on`;
+      return effect.enabled === false ? t("switch {{whom}} off", { whom }) : t("switch {{whom}} on", { whom });
     case "pause":
-      return "pause the simulation";
+      return t("pause the simulation");
   }
 }
 
@@ -62,5 +70,5 @@ export function isCaused({ type }: Pick<Trigger, "type">): boolean {
 }
 
 export function actionText({ trigger, sender, effect, receiver }: Omit<Action, "id">, called: Namer): string {
-  return `When ${whenText(trigger, sender, called)}, then ${thenText(effect, receiver, isCaused(trigger), called)}.`;
+  return t("When {{trigger}}, then {{effect}}.", { trigger: whenText(trigger, sender, called), effect: thenText(effect, receiver, isCaused(trigger), called) });
 }

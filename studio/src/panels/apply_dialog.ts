@@ -6,6 +6,7 @@ import { fieldFor, wholeValue } from "./attribute_row";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
 import { userNameField } from "./user_name";
+import { countText, t, translateServerText } from "../language";
 
 const NAMES_SHOWN = 8;
 const REFUSALS_SHOWN = 4;
@@ -33,9 +34,9 @@ class ApplyDialog {
   private readonly field;
   private readonly preview = element("div", { class: "apply-preview", role: "status", "data-testid": "apply-preview" });
   private readonly problem = element("p", { class: "field-error", role: "alert" });
-  private readonly bar = element("progress", { "aria-label": "Models changed" });
-  private readonly confirm = element("button", { class: "primary", type: "submit", "data-testid": "apply-confirm" }, "Change");
-  private readonly cancel = element("button", { type: "button", "data-testid": "apply-cancel", onclick: () => this.leave() }, "Cancel");
+  private readonly bar = element("progress", { "aria-label": t("Models changed") });
+  private readonly confirm = element("button", { class: "primary", type: "submit", "data-testid": "apply-confirm" }, t("Change"));
+  private readonly cancel = element("button", { type: "button", "data-testid": "apply-cancel", onclick: () => this.leave() }, t("Cancel"));
   private readonly choices: HTMLFieldSetElement;
   private readonly dialog: HTMLDialogElement;
 
@@ -56,7 +57,7 @@ class ApplyDialog {
     show(this.bar, false);
     const form = element("form", { class: "apply", onsubmit: (event: Event) => (event.preventDefault(), void this.carryOut()) });
     form.append(this.choices, this.preview, this.problem, this.bar, element("div", { class: "dialog-buttons" }, this.cancel, this.confirm));
-    this.dialog = openDialog(`Apply ${entry.label || entry.name} to models`, "apply-dialog", form);
+    this.dialog = openDialog(t("Apply {{label}} to models", { label: translateServerText(entry.label) || entry.name }), "apply-dialog", form);
     const ended = parts.server.progress.on(({ client, done, total }) => client === parts.server.client && this.showProgress(done, total));
     this.dialog.addEventListener("close", ended);
     this.dialog.addEventListener("cancel", (event) => this.working && event.preventDefault());
@@ -67,13 +68,13 @@ class ApplyDialog {
     const radio = (resets: boolean, testId: string) =>
       element("input", { type: "radio", name: "value", checked: resets === this.resets, "data-testid": testId, onchange: () => ((this.resets = resets), void this.ask()) });
     const scaled = this.entry.of_model !== undefined && JSON.stringify(this.entry.of_model) !== JSON.stringify(this.entry.value);
-    const set = element("div", { class: "apply-value" }, element("label", { class: "choice" }, radio(false, "apply-set"), "Set to"), this.field.root);
+    const set = element("div", { class: "apply-value" }, element("label", { class: "choice" }, radio(false, "apply-set"), t("Set to")), this.field.root);
     return element(
       "div",
-      { role: "radiogroup", "aria-label": "Value" },
+      { role: "radiogroup", "aria-label": t("Value") },
       set,
-      scaled ? element("p", { class: "note indented" }, "The value without the entity's scale, as the model has it.") : null,
-      element("label", { class: "choice" }, radio(true, "apply-reset"), "Back to the automatic value of each model"),
+      scaled ? element("p", { class: "note indented" }, t("The value without the entity's scale, as the model has it.")) : null,
+      element("label", { class: "choice" }, radio(true, "apply-reset"), t("Back to the automatic value of each model")),
     );
   }
 
@@ -84,13 +85,13 @@ class ApplyDialog {
         { class: "choice" },
         element("input", { type: "radio", name: "scope", checked: scope === this.scope, "data-testid": `apply-scope-${scope.id}`, onchange: () => ((this.scope = scope), void this.ask()) }),
         element("span", { class: "scope-text" }, scope.text),
-        element("span", { class: "note" }, scope.total === 1 ? "1 model" : `${scope.total.toLocaleString("en")} models`),
+        element("span", { class: "note" }, t("{{count, number}} models", { count: scope.total })),
       );
-    return element("div", { role: "radiogroup", "aria-label": "Models" }, element("h3", {}, "For"), ...scopes.map(row));
+    return element("div", { role: "radiogroup", "aria-label": t("Models") }, element("h3", {}, t("For")), ...scopes.map(row));
   }
 
   private nameChoice(): HTMLElement {
-    return element("label", { class: "apply-name" }, element("span", {}, "In the history as"), userNameField(this.parts));
+    return element("label", { class: "apply-name" }, element("span", {}, t("In the history as")), userNameField(this.parts));
   }
 
   private request(dry_run: boolean) {
@@ -118,30 +119,31 @@ class ApplyDialog {
     const others = chosen - refused;
     const lines: (HTMLElement | null)[] = [];
     if (!stopped) {
-      const already = unchanged > 0 ? `; ${count(unchanged, "has", "have")} ${this.resets ? "it" : "this value"} already` : "";
-      lines.push(element("p", { class: "apply-count" }, changed === 0 && unchanged > 0 ? "Nothing changes: all have it already." : `${count(changed, "model changes", "models change")}${already}.`));
+      const changes = t("{{count, number}} models change", { count: changed });
+      const already = this.resets ? t("{{count, number}} have it already", { count: unchanged }) : t("{{count, number}} have this value already", { count: unchanged });
+      lines.push(element("p", { class: "apply-count" }, changed === 0 && unchanged > 0 ? t("Nothing changes: all have it already.") : unchanged > 0 ? t("{{changes}}; {{already}}.", { changes, already }) : t("{{changes}}.", { changes })));
       lines.push(nameList(summary.models.map(({ name }) => name), changed, NAMES_SHOWN));
       lines.push(this.sceneNote(summary));
     }
     if (refused > 0) {
-      const text = `${count(refused, "model cannot", "models cannot")} have it${stopped ? ", so nothing would be changed" : " and stay as they are"}:`;
-      const reasons = summary.refusals.slice(0, REFUSALS_SHOWN).map(({ name, why }) => element("li", {}, `${name}: ${why}`));
-      if (refused > reasons.length) reasons.push(element("li", {}, `and ${(refused - reasons.length).toLocaleString("en")} more`));
+      const text = stopped ? t("{{count, number}} models cannot have it, so nothing would be changed:", { count: refused }) : t("{{count, number}} models cannot have it and stay as they are:", { count: refused });
+      const reasons = summary.refusals.slice(0, REFUSALS_SHOWN).map(({ name, why }) => element("li", {}, `${name}: ${translateServerText(why)}`));
+      if (refused > reasons.length) reasons.push(element("li", {}, t("and {{number}} more", { number: countText(refused - reasons.length) })));
       const box = element("input", { type: "checkbox", checked: this.skip, "data-testid": "apply-skip", onchange: () => ((this.skip = box.checked), void this.ask()) });
       lines.push(element("p", { class: "apply-refused" }, text), element("ul", { class: "apply-reasons" }, ...reasons));
-      if (others > 0) lines.push(element("label", { class: "choice" }, box, `Change the other ${others.toLocaleString("en")}`));
+      if (others > 0) lines.push(element("label", { class: "choice" }, box, t("Change the other {{others}}", { others: countText(others) })));
     }
     this.preview.replaceChildren(...lines.filter((line) => line !== null));
     this.confirm.disabled = stopped || changed === 0;
-    setText(this.confirm, stopped || changed === 0 ? "Change" : changed === 1 ? "Change 1 model" : `Change ${changed.toLocaleString("en")} models`);
+    setText(this.confirm, stopped || changed === 0 ? t("Change") : t("Change {{count, number}} models", { count: changed }));
   }
 
   /** Says what happens to entities that are in the scene already. */
   private sceneNote({ entities: { following, keeping } }: ChangeSummary): HTMLElement {
     const parts = [];
-    if (following > 0) parts.push(`${count(following, "thing", "things")} in this scene ${following === 1 ? "follows" : "follow"} at once.`);
-    if (keeping > 0) parts.push(`${count(keeping, "thing has a value of its own and keeps", "things have values of their own and keep")} it.`);
-    parts.push("Other scenes follow when they are opened next; a value set for a single entity always stays.");
+    if (following > 0) parts.push(t("{{count, number}} things in this scene follow at once.", { count: following }));
+    if (keeping > 0) parts.push(t("{{count, number}} things have values of their own and keep them.", { count: keeping }));
+    parts.push(t("Other scenes follow when they are opened next; a value set for a single entity always stays."));
     return element("p", { class: "note" }, parts.join(" "));
   }
 
@@ -149,7 +151,7 @@ class ApplyDialog {
     if (this.working || this.confirm.disabled) return;
     this.working = true;
     this.choices.disabled = this.confirm.disabled = true;
-    setText(this.cancel, "Stop");
+    setText(this.cancel, t("Stop"));
     setText(this.problem, "");
     this.bar.removeAttribute("value");
     show(this.bar, true);
@@ -162,7 +164,7 @@ class ApplyDialog {
       setText(this.problem, reasonText(error as Error));
     }
     this.working = this.choices.disabled = false;
-    setText(this.cancel, "Cancel");
+    setText(this.cancel, t("Cancel"));
     show(this.bar, false);
     await this.ask();
   }
@@ -170,7 +172,7 @@ class ApplyDialog {
   private showProgress(done: number, total: number): void {
     this.bar.max = total;
     this.bar.value = done;
-    setText(this.confirm, `${done.toLocaleString("en")} of ${total.toLocaleString("en")}`);
+    setText(this.confirm, t("{{done}} of {{total}}", { done: countText(done), total: countText(total) }));
   }
 
   private leave(): void {
@@ -184,12 +186,12 @@ async function scopesOf(parts: Pick<Parts, "server" | "found" | "models">, keys:
   const models = await Promise.allSettled(keys.map((key) => parts.models.summary(key)));
   const known = models.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
   if (known.length === 0) return [];
-  const own = known.length === 1 ? `This model: ${known[0]!.name}` : `The models of the selection`;
+  const own = known.length === 1 ? t("This model: {{name}}", { name: known[0]!.name }) : t("The models of the selection");
   const scopes: Scope[] = [{ id: "model", text: own, models: { keys: known.map(({ key }) => key) }, total: known.length }];
   const { found } = parts;
-  scopes.push({ id: "found", text: "all" in found.models ? "All models of the catalogue" : `All that the browser shows: ${found.text}`, models: found.models, total: await totalOf(parts, found.models) });
+  scopes.push({ id: "found", text: "all" in found.models ? t("All models of the catalogue") : t("All that the browser shows: {{text}}", { text: found.text }), models: found.models, total: await totalOf(parts, found.models) });
   for (const category of new Set(known.map((model) => model.category)))
-    if (category) scopes.push({ id: "category", text: `All of the category “${category}”`, models: { category }, total: await totalOf(parts, { category }) });
+    if (category) scopes.push({ id: "category", text: t("All of the category “{{category}}”", { category: translateServerText(category) }), models: { category }, total: await totalOf(parts, { category }) });
   return scopes.filter(({ total }) => total > 0);
 }
 
@@ -206,10 +208,6 @@ function nameList(names: string[], total: number, most: number): HTMLElement {
   const shown = [...times].slice(0, most);
   const rest = total - shown.reduce((sum, [, many]) => sum + many, 0);
   const items = shown.map(([name, many]) => element("li", {}, many > 1 ? `${name} × ${many}` : name));
-  if (rest > 0 && shown.length > 0) items.push(element("li", { class: "more" }, `and ${rest.toLocaleString("en")} more`));
+  if (rest > 0 && shown.length > 0) items.push(element("li", { class: "more" }, t("and {{number}} more", { number: countText(rest) })));
   return element("ul", { class: "apply-names", "data-testid": "apply-names" }, ...items);
-}
-
-function count(number: number, one: string, many: string): string {
-  return `${number.toLocaleString("en")} ${number === 1 ? one : many}`;
 }

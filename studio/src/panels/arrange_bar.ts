@@ -3,6 +3,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { icon } from "../tools/icons";
 import { element, show } from "./element";
+import { t } from "../language";
 
 const GROUPS = [
   ["arrange.align.x.low", "arrange.align.x.center", "arrange.align.x.high"],
@@ -25,7 +26,7 @@ export class ArrangeBar {
     const find = (id: string) => actions.find((action) => action.id === id);
     this.root = element(
       "div",
-      { class: "arrange-bar", role: "toolbar", "aria-label": "Arrange", "data-testid": "arrange-bar" },
+      { class: "arrange-bar", role: "toolbar", "aria-label": t("Arrange"), "data-testid": "arrange-bar" },
       ...GROUPS.map((ids) => element("div", { class: "tool-group", role: "group" }, ...ids.flatMap((id) => find(id) ?? []).map((action) => this.button(action)))),
     );
     parts.selection.changed.on(() => this.refresh());

@@ -6,6 +6,7 @@ import type { Parts } from "../parts";
 import { BoxPreview } from "../view/box_preview";
 import { element, setText } from "./element";
 import { vectorField } from "./fields";
+import { t } from "../language";
 
 /** More boxes would hide the picture; the server decides how many copies there may be. */
 const MOST_SHOWN = 2000;
@@ -16,22 +17,22 @@ type ArrayParts = Pick<Parts, "server" | "selection" | "entities" | "view">;
 
 /** Rows, columns and layers of copies of the selection: how many and how far apart, shown in the picture before they are made. */
 export class ArrayCard {
-  readonly root = element("div", { class: "card array-card", role: "dialog", "aria-label": "Copies in rows", "data-testid": "array-card", hidden: true });
+  readonly root = element("div", { class: "card array-card", role: "dialog", "aria-label": t("Copies in rows"), "data-testid": "array-card", hidden: true });
   private readonly preview = new BoxPreview();
   private counts: Vector = [3, 1, 1];
   private spacing: Vector = [1, 1, 1];
   private readonly said = element("p", { class: "note", "data-testid": "array-count" });
-  private readonly countField = vectorField(["Copies along x", "Copies along y", "Copies along z"], "", (typed) => this.put({ counts: withTyped(this.counts, typed) as Vector }), 1);
-  private readonly spacingField = vectorField(["Distance along x", "Distance along y", "Distance along z"], "m", (typed) => this.put({ spacing: withTyped(this.spacing, typed) as Vector }), 0.05);
+  private readonly countField = vectorField([t("Copies along x"), t("Copies along y"), t("Copies along z")], "", (typed) => this.put({ counts: withTyped(this.counts, typed) as Vector }), 1);
+  private readonly spacingField = vectorField([t("Distance along x"), t("Distance along y"), t("Distance along z")], "m", (typed) => this.put({ spacing: withTyped(this.spacing, typed) as Vector }), 0.05);
 
   constructor(private readonly parts: ArrayParts) {
     const row = (label: string, field: HTMLElement, help: string) => element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: help }, label), field);
     this.root.append(
-      element("strong", {}, "Copies in rows"),
-      row("How many", this.countField.root, "Along X, upwards, and along Z; what is selected is the first"),
-      row("Distance", this.spacingField.root, "From one to the next; negative: the other way"),
+      element("strong", {}, t("Copies in rows")),
+      row(t("How many"), this.countField.root, t("Along X, upwards, and along Z; what is selected is the first")),
+      row(t("Distance"), this.spacingField.root, t("From one to the next; negative: the other way")),
       this.said,
-      element("div", { class: "dialog-buttons" }, element("button", { onclick: () => this.close() }, "Cancel"), element("button", { class: "primary", "data-testid": "array-make", onclick: () => void this.make() }, "Add the copies")),
+      element("div", { class: "dialog-buttons" }, element("button", { onclick: () => this.close() }, t("Cancel")), element("button", { class: "primary", "data-testid": "array-make", onclick: () => void this.make() }, t("Add the copies"))),
     );
     this.root.addEventListener("keydown", (event) => event.key === "Escape" && (event.stopPropagation(), this.close()));
     parts.selection.changed.on(() => this.close());
@@ -74,7 +75,7 @@ export class ArrayCard {
       offsets.push(new Vector3((at % x) * spacing[0], Math.floor(at / x / z) * spacing[1], (Math.floor(at / x) % z) * spacing[2]));
     this.preview.show(this.box(), offsets);
     const copies = (x * y * z - 1) * this.parts.selection.indices.length;
-    setText(this.said, `${copies.toLocaleString("en")} ${copies === 1 ? "copy" : "copies"} will be added, drawn as boxes.`);
+    setText(this.said, t("{{count, number}} copies will be added, drawn as boxes.", { count: copies }));
     this.parts.view.invalidate();
   }
 

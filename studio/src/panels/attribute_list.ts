@@ -9,6 +9,7 @@ import { openApply } from "./apply_dialog";
 import { element, setText, show } from "./element";
 import type { Change } from "./fields";
 import { foldingGroup } from "./folding";
+import { t, translateServerText } from "../language";
 
 const REFRESH_DELAY_MS = 60;
 
@@ -21,8 +22,8 @@ const ESSENTIALS = [
 /** The physical attributes of what is selected, or of the model picked in the catalogue: first what matters, then all others grouped by kind and folded. */
 export class AttributeList implements AttributeEdits {
   /** What stands first, and the groups, which are folded at first. */
-  readonly essentials = element("section", { class: "attributes essentials", "data-testid": "essentials", "aria-label": "What matters most" });
-  readonly root = element("section", { class: "attributes", "data-testid": "attributes", "aria-label": "Physical attributes" });
+  readonly essentials = element("section", { class: "attributes essentials", "data-testid": "essentials", "aria-label": t("What matters most") });
+  readonly root = element("section", { class: "attributes", "data-testid": "attributes", "aria-label": t("Physical attributes") });
   private readonly note = element("p", { class: "note" });
   private readonly groups = element("div", {});
   private rows = new Map<string, AttributeRow>();
@@ -120,7 +121,7 @@ export class AttributeList implements AttributeEdits {
       if (ESSENTIALS.includes(entry.name)) continue;
       let group = this.groupOf.get(entry.kind);
       if (!group) {
-        group = foldingGroup(this.parts.preferences, `values.${entry.kind}`, entry.kind === "identity" ? "More about what it is" : entry.kind_label, false);
+        group = foldingGroup(this.parts.preferences, `values.${entry.kind}`, entry.kind === "identity" ? t("More about what it is") : translateServerText(entry.kind_label), false);
         this.groupOf.set(entry.kind, group);
       }
       group.append(this.rows.get(entry.name)!.root);

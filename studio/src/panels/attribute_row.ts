@@ -6,6 +6,7 @@ import { type Change, type Components, type Field, numberField, truthField, vect
 import { GROUP_LIST, NOISE, type NumberFormat, numberText, PLAIN, THRESHOLD } from "./number_text";
 import { wordText } from "./words";
 import { icon } from "../tools/icons";
+import { t, translateServerText } from "../language";
 
 /** One attribute and its value in the selected entities. */
 export interface SharedAttribute {
@@ -21,14 +22,26 @@ export interface SharedAttribute {
 
 /** Levels of confidence in a value, the highest first, and the meaning of the badge beside it. */
 const LEVELS: Record<string, string> = {
-  manual: "Set by hand",
-  measured: "Measured",
-  model: "Found in this very model: its shape, its materials, its catalogue",
-  subcategory: "Usual for things of this subcategory",
-  category: "Usual for things of this category",
-  kind: "Usual for this physical kind",
-  default: "Nothing better is known: the same for everything",
-  mixed: "The selected entities have different values",
+  manual: t("Set by hand"),
+  measured: t("Measured"),
+  model: t("Found in this very model: its shape, its materials, its catalogue"),
+  subcategory: t("Usual for things of this subcategory"),
+  category: t("Usual for things of this category"),
+  kind: t("Usual for this physical kind"),
+  default: t("Nothing better is known: the same for everything"),
+  mixed: t("The selected entities have different values"),
+};
+
+/** The words of the badges. */
+const LEVEL_NAMES: Record<string, string> = {
+  manual: t("manual"),
+  measured: t("measured"),
+  model: t("model"),
+  subcategory: t("subcategory"),
+  category: t("category"),
+  kind: t("kind"),
+  default: t("default"),
+  mixed: t("mixed"),
 };
 
 export interface AttributeEdits {
@@ -62,23 +75,23 @@ export class AttributeRow {
   ) {
     this.shown = entry;
     this.field = fieldFor(entry, (value) => void this.commit(entry.name, value), (change) => void this.changeEach(entry.name, change)) as Field<never>;
+    const label = translateServerText(entry.label) || entry.name;
     this.reset = element(
       "button",
       {
         class: "reset-button",
-        "aria-label": `${entry.label}: back to the automatic value`,
+        "aria-label": t("{{label}}: back to the automatic value", { label }),
         "data-testid": `reset-${entry.name}`,
         onclick: () => void this.goBack(entry.name),
       },
       icon("undo"),
     );
-    const label = entry.label || entry.name;
     const apply = element(
       "button",
       {
         class: "apply-button",
-        title: `Apply ${label} to models of the catalogue…`,
-        "aria-label": `Apply ${label} to models of the catalogue`,
+        title: t("Apply {{label}} to models of the catalogue…", { label }),
+        "aria-label": t("Apply {{label}} to models of the catalogue", { label }),
         "data-testid": `apply-${entry.name}`,
         onclick: () => this.edits.apply(this.shown),
       },
@@ -86,8 +99,8 @@ export class AttributeRow {
     );
     this.root = element(
       "div",
-      { class: "attribute", "data-testid": `attribute-${entry.name}`, "data-name": entry.name },
-      element("span", { class: "attribute-label", title: `${entry.help}${rangeText(entry)}\n(${entry.name})` }, label),
+      { class: "attribute", "data-testid": `attribute-${entry.name}`, "data-name": entry.name, "data-label": entry.label },
+      element("span", { class: "attribute-label", title: [translateServerText(entry.help), rangeText(entry), `(${entry.name})`].filter(Boolean).join("\n") }, label),
       this.level,
       this.field.root,
       canApply ? apply : null,
@@ -112,9 +125,10 @@ export class AttributeRow {
     this.root.classList.toggle("warned", warning !== undefined);
     if (!warning) return;
     const { reset, remedy } = warning;
-    const text = remedy ? `${remedy[0]!.toUpperCase()}${remedy.slice(1)}` : "";
-    const mend = reset ? element("button", { class: "link", "data-testid": `mend-${this.shown.name}`, onclick: () => void this.goBack(reset) }, remedy.startsWith("back to automatic") ? text : "Back to automatic") : null;
-    this.warning.replaceChildren(`⚠ ${warning.why}. `, ...(remedy && !remedy.startsWith("back to automatic") ? [`${text}. `] : []), ...(mend ? [mend] : []));
+    const told = translateServerText(remedy);
+    const text = told ? `${told[0]!.toUpperCase()}${told.slice(1)}` : "";
+    const mend = reset ? element("button", { class: "link", "data-testid": `mend-${this.shown.name}`, onclick: () => void this.goBack(reset) }, remedy.startsWith("back to automatic") ? text : t("Back to automatic")) : null;
+    this.warning.replaceChildren(t("⚠ {{why}}. ", { why: translateServerText(warning.why) }), ...(remedy && !remedy.startsWith("back to automatic") ? [t("{{remedy}}. ", { remedy: text })] : []), ...(mend ? [mend] : []));
   }
 
   show({ entry, same, components, overridden, warnings }: SharedAttribute): void {
@@ -122,20 +136,20 @@ export class AttributeRow {
     this.same = same;
     this.field.set((same ? entry.value : components) as never);
     const level = same ? entry.level : "mixed";
-    this.level.setAttribute("aria-label", level);
+    this.level.setAttribute("aria-label", LEVEL_NAMES[level] ?? level);
     this.level.dataset["level"] = level;
-    this.level.title = `${LEVELS[level] ?? ""}\nClick: where the value is from`;
+    this.level.title = [LEVELS[level], t("Click: where the value is from")].filter(Boolean).join("\n");
     if (this.root.dataset["changed"] !== String(overridden)) this.root.dataset["changed"] = String(overridden);
     this.warn(warnings[0]);
     const interval = same ? intervalText(entry) : "";
     // A source that only repeats its level tells nothing new; the meaning of the level does.
-    const told = entry.source === entry.level ? (LEVELS[level] ?? "") : entry.source;
+    const told = entry.source === entry.level ? (LEVELS[level] ?? "") : translateServerText(entry.source);
     // The value was set for the model, so that it cannot be reset for this entity alone.
-    const source = level === "manual" && !overridden ? `in the catalogue, ${told}` : told;
-    setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : "the selected entities differ");
-    this.source.title = same ? `${entry.source}${interval ? `\n80 % interval ${interval}` : ""}` : "";
+    const source = level === "manual" && !overridden ? t("in the catalogue, {{told}}", { told }) : told;
+    setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : t("the selected entities differ"));
+    this.source.title = same ? [translateServerText(entry.source), interval && t("80 % interval {{interval}}", { interval })].filter(Boolean).join("\n") : "";
     show(this.reset, overridden);
-    this.reset.title = entry.automatic === null ? "Back to the automatic value" : `Back to the automatic value, ${valueText(entry.automatic, entry.name)}`;
+    this.reset.title = entry.automatic === null ? t("Back to the automatic value") : t("Back to the automatic value, {{automatic}}", { automatic: valueText(entry.automatic, entry.name) });
   }
 
   private async commit(name: string, edit: AttributeEdit): Promise<void> {
@@ -157,7 +171,7 @@ export function wholeValue(edit: AttributeEdit, known: AttributeValue): Attribut
 }
 
 export function fieldFor(entry: AttributeEntry, commit: (value: AttributeEdit) => void, each?: (change: Change) => void): Field<never> {
-  const label = entry.label || entry.name;
+  const label = translateServerText(entry.label) || entry.name;
   const unit = unitText(entry.unit);
   const made = (() => {
     switch (entry.type) {
@@ -227,14 +241,14 @@ function rangeText({ name, range, unit }: AttributeEntry): string {
   if (!range || MASKS.includes(name)) return "";
   const [low, high] = range.map((bound) => (bound === null ? null : numberText(bound)));
   const behind = unit && unit !== "1" ? ` ${unitText(unit)}` : "";
-  if (low === null || high === null) return low === null ? (high === null ? "" : `\nAt most ${high}${behind}`) : `\nAt least ${low}${behind}`;
-  return `\nFrom ${low} to ${high}${behind}`;
+  if (low === null || high === null) return low === null ? (high === null ? "" : t("At most {{high}}{{unit}}", { high, unit: behind })) : t("At least {{low}}{{unit}}", { low, unit: behind });
+  return t("From {{low}} to {{high}}{{unit}}", { low, high, unit: behind });
 }
 
 /** The value of the attribute of this name, for people. */
 export function valueText(value: AttributeValue, name: string): string {
   if (typeof value === "number") return formatOf(name, null).write(value);
   if (Array.isArray(value)) return value.map(numberText).join(", ");
-  if (typeof value === "boolean") return value ? "yes" : "no";
-  return value === "infinity" ? "never" : value === "" ? "not known" : wordText(value);
+  if (typeof value === "boolean") return value ? t("yes") : t("no");
+  return value === "infinity" ? t("never") : value === "" ? t("not known") : wordText(value);
 }

@@ -2,6 +2,7 @@
 import type { AttributeEdit, AttributeEntry, AttributeValue } from "../connection/messages";
 import type { Parts } from "../parts";
 import type { Change } from "./fields";
+import { t } from "../language";
 
 /** Of a larger selection only so many entities are asked for, because asking for all would take long. */
 const MOST_ASKED = 32;
@@ -35,7 +36,7 @@ export class SelectedEntities implements AttributeSubject {
     const asked = this.indices.slice(0, MOST_ASKED);
     const answers = await Promise.allSettled(asked.map((index) => this.parts.server.request("entity.attributes", { index })));
     const failed = answers.find((answer) => answer.status === "rejected");
-    const many = this.indices.length > MOST_ASKED ? `Values of the first ${MOST_ASKED} of ${this.indices.length} entities; an edit changes all of them.` : "";
+    const many = this.indices.length > MOST_ASKED ? t("Values of the first {{asked}} of {{count}} entities; an edit changes all of them.", { asked: MOST_ASKED, count: this.indices.length }) : "";
     return {
       sets: answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value.attributes] : [])),
       note: failed ? (failed.reason as Error).message : many,

@@ -4,13 +4,14 @@ import type { UserAction } from "../tools/actions";
 import type { BuildMode, BuildTool } from "../tools/build_tool";
 import { type IconName, icon } from "../tools/icons";
 import { element, show } from "./element";
+import { t } from "../language";
 
 const HINTS: Record<BuildMode, string> = {
-  wall: "Click from corner to corner. Type a length and press Enter. Escape ends.",
-  room: "Drag from one corner to the opposite one.",
-  door: "Click where the door goes. Drag it along its wall afterwards.",
-  window: "Click where the window goes. Drag it along its wall afterwards.",
-  hole: "Click on a wall.",
+  wall: t("Click from corner to corner. Type a length and press Enter. Escape ends."),
+  room: t("Drag from one corner to the opposite one."),
+  door: t("Click where the door goes. Drag it along its wall afterwards."),
+  window: t("Click where the window goes. Drag it along its wall afterwards."),
+  hole: t("Click on a wall."),
 };
 
 /** A bar over the picture while something is built: what, how high and how thick. */
@@ -34,10 +35,10 @@ export class BuildBar {
         action.label,
       ),
     }));
-    this.sizes = element("div", { class: "tool-group" }, this.size("Height", "height", 0.1), this.size("Thickness", "thickness", 0.01));
+    this.sizes = element("div", { class: "tool-group" }, this.size(t("Height"), "height", 0.1), this.size(t("Thickness"), "thickness", 0.01));
     this.root = element(
       "div",
-      { class: "arrange-bar build-bar", role: "toolbar", "aria-label": "Build", "data-testid": "build-bar" },
+      { class: "arrange-bar build-bar", role: "toolbar", "aria-label": t("Build"), "data-testid": "build-bar" },
       element("div", { class: "tool-group", role: "group" }, ...this.buttons.map(({ button }) => button)),
       this.sizes,
       this.hint,
@@ -69,17 +70,17 @@ export function buildActions(tool: BuildTool): UserAction[] {
   const action = (mode: BuildMode, label: string, name: IconName, keys: string[] = []): UserAction => ({
     id: `build.${mode}`,
     label,
-    group: "Build",
+    group: t("Build"),
     keys,
     icon: name,
     on: () => tool.mode === mode,
     run: () => tool.choose(tool.mode === mode ? null : mode),
   });
   return [
-    action("wall", "Walls", "wall", ["B"]),
-    action("room", "Room", "room", ["Shift+B"]),
-    action("door", "Door", "door"),
-    action("window", "Window", "window"),
-    action("hole", "Opening", "hole"),
+    action("wall", t("Walls"), "wall", ["B"]),
+    action("room", t("Room"), "room", ["Shift+B"]),
+    action("door", t("Door"), "door"),
+    action("window", t("Window"), "window"),
+    action("hole", t("Opening"), "hole"),
   ];
 }

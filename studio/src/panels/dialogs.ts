@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { icon } from "../tools/icons";
 import { element, show } from "./element";
+import { dateLocale, t } from "../language";
 
 /** A modal dialog with a title; closes with Escape, its cross, or a click outside. */
 export function openDialog(title: string, testId: string, ...contents: (Node | null)[]): HTMLDialogElement {
@@ -11,7 +12,7 @@ export function openDialog(title: string, testId: string, ...contents: (Node | n
       "header",
       {},
       element("h2", {}, title),
-      element("button", { class: "plain", "aria-label": "Close", onclick: () => dialog.close() }, icon("close")),
+      element("button", { class: "plain", "aria-label": t("Close"), onclick: () => dialog.close() }, icon("close")),
     ),
     ...contents,
   );
@@ -51,7 +52,7 @@ export function openTextDialog(
     element("label", {}, label, input),
     error,
     note ? element("p", { class: "note" }, note) : null,
-    dialogButtons(element("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), element("button", { class: "primary", type: "submit" }, action)),
+    dialogButtons(element("button", { type: "button", onclick: () => dialog.close() }, t("Cancel")), element("button", { class: "primary", type: "submit" }, action)),
   );
   const dialog = openDialog(title, `${testId}-dialog`, form);
   input.focus();
@@ -63,5 +64,5 @@ export function openTextDialog(
 export function dateText(time: string | null): string {
   if (!time) return "";
   const date = new Date(time);
-  return Number.isNaN(date.getTime()) ? "" : date.toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
+  return Number.isNaN(date.getTime()) ? "" : date.toLocaleString(dateLocale, { dateStyle: "medium", timeStyle: "short" });
 }

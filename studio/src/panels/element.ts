@@ -21,6 +21,15 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+/** Stands in a text where an element goes. */
+export const GAP = "\u{fffc}";
+
+/** The children of an element that shows a text with another element at its gap. */
+export function around(text: string, inner: HTMLElement): (string | HTMLElement)[] {
+  const [before = "", after = ""] = text.split(GAP);
+  return [before, inner, after];
+}
+
 /** Shows or hides an element that stays in the document. */
 export function show(shown: HTMLElement, visible: boolean): void {
   shown.hidden = !visible;

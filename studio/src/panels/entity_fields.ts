@@ -14,6 +14,7 @@ import { element, show } from "./element";
 import { foldingGroup } from "./folding";
 import { type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { modelCard } from "./model_card";
+import { t } from "../language";
 
 const LIVE_EVERY_MS = 200;
 
@@ -22,8 +23,8 @@ type Row = { root: HTMLElement; update(entities: Entity[]): void };
 /** Name, pose, size and start of the selected entities, which do not depend on their material. */
 export class EntityFields {
   /** Name, lock and model; what matters most of its values comes between this and the fields. */
-  readonly head = element("section", { class: "entity", "data-testid": "entity-head", "aria-label": "Entity" });
-  readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": "Place and start" });
+  readonly head = element("section", { class: "entity", "data-testid": "entity-head", "aria-label": t("Entity") });
+  readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": t("Place and start") });
   private rows: Row[] = [];
   private lastLive = 0;
 
@@ -55,13 +56,13 @@ export class EntityFields {
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
     const card = single?.model ? modelCard(this.parts, single.model) : null;
-    const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
+    const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, t("{{count}} entities", { count: entities.length }));
     const padlock = this.padlock();
     this.rows.push(padlock);
     this.head.replaceChildren(element("div", { class: "entity-head" }, title, padlock.root), ...(card ? [card] : []));
     this.root.replaceChildren(
-      foldingGroup(this.parts.preferences, "entity.place", "Place and size", true, ...shown.map((row) => row.root)),
-      foldingGroup(this.parts.preferences, "entity.start", "Start and forces", false, ...start.map((row) => row.root)),
+      foldingGroup(this.parts.preferences, "entity.place", t("Place and size"), true, ...shown.map((row) => row.root)),
+      foldingGroup(this.parts.preferences, "entity.start", t("Start and forces"), false, ...start.map((row) => row.root)),
     );
     this.update();
   }
@@ -83,14 +84,14 @@ export class EntityFields {
         shown = locked;
         button.replaceChildren(icon(locked ? "lock" : "unlock"));
         button.setAttribute("aria-pressed", String(locked));
-        button.setAttribute("aria-label", locked ? "Unlock" : "Lock");
-        button.title = locked ? "Locked: keeps its place, size and existence. Click to unlock (L)" : "Lock it where it is (L)";
+        button.setAttribute("aria-label", locked ? t("Unlock") : t("Lock"));
+        button.title = locked ? t("Locked: keeps its place, size and existence. Click to unlock (L)") : t("Lock it where it is (L)");
       },
     };
   }
 
   private nameRow(): Row {
-    const field = textField("Name", (name) => this.change({ name }));
+    const field = textField(t("Name"), (name) => this.change({ name }));
     field.root.classList.add("name-field");
     field.root.querySelector("input")!.dataset["testid"] = "entity-name";
     return { root: field.root, update: ([entity]) => field.set(nameOf(entity!)) };
@@ -98,16 +99,16 @@ export class EntityFields {
 
   private poseRows(): Row[] {
     const only = (at: number, value: (own: number) => number) => (own: readonly number[]) => own.map((part, each) => (each === at ? value(part) : part));
-    const position = vectorField(["Position x", "Position y", "Position z"], "m", (typed) => this.move("position", (own) => withTyped(own, typed)), 0.01, (at, change) => this.move("position", only(at, change)));
-    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (typed) => this.move("degrees", (own) => withTyped(own, typed)), 1, (at, change) => this.move("degrees", only(at, change)));
+    const position = vectorField([t("Position x"), t("Position y"), t("Position z")], "m", (typed) => this.move("position", (own) => withTyped(own, typed)), 0.01, (at, change) => this.move("position", only(at, change)));
+    const rotation = vectorField([t("Rotation x"), t("Rotation y"), t("Rotation z")], "°", (typed) => this.move("degrees", (own) => withTyped(own, typed)), 1, (at, change) => this.move("degrees", only(at, change)));
     const update = (entities: Entity[]): void => {
       const poses = entities.map((entity) => presentPose(this.parts, entity));
       position.set(commonComponents(poses.map((pose) => pose.position.map((length) => rounded(length, 1e4)))));
       rotation.set(commonComponents(poses.map((pose) => pose.degrees.map((angle) => rounded(angle, 100)))));
     };
     return [
-      { root: row("Position", position.root), update },
-      { root: row("Rotation", rotation.root), update: () => {} },
+      { root: row(t("Position"), position.root), update },
+      { root: row(t("Rotation"), rotation.root), update: () => {} },
     ];
   }
 
@@ -141,15 +142,15 @@ export class EntityFields {
   }
 
   private scaleRow(): Row {
-    const field = numberField("Scale", "", (scale) => this.resize(() => ({ scale })), { step: 0.05, each: (change) => this.resize((entity) => ({ scale: change(entity.scale ?? 1) })) });
-    return { root: row("Scale", field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
+    const field = numberField(t("Scale"), "", (scale) => this.resize(() => ({ scale })), { step: 0.05, each: (change) => this.resize((entity) => ({ scale: change(entity.scale ?? 1) })) });
+    return { root: row(t("Scale"), field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
   }
 
   private colorRow(): Row {
-    const input = element("input", { type: "color", "aria-label": "Colour" });
+    const input = element("input", { type: "color", "aria-label": t("Colour") });
     input.addEventListener("change", () => this.change({ color: new Color(input.value).toArray() as Vector }));
     return {
-      root: row("Colour", element("span", { class: "field" }, input)),
+      root: row(t("Colour"), element("span", { class: "field" }, input)),
       update: ([entity]) => {
         if (document.activeElement !== input) input.value = `#${colorOf(entity!).getHexString()}`;
       },
@@ -181,13 +182,13 @@ export class EntityFields {
       return { root: shown.root, update: (entities) => (shown.update(entities), markChanged(shown.root, entities.some((entity) => (entity[name] ?? standard) !== standard))) };
     };
     return [
-      vector("Velocity", "m/s", "linear_velocity"),
-      vector("Spin", "rad/s", "angular_velocity"),
-      vector("Force", "N", "force"),
-      vector("Torque", "N m", "torque"),
-      truth("In the world", "enabled", true),
-      truth("Starts asleep", "start_asleep", false),
-      truth("Fast: never tunnels", "continuous", false),
+      vector(t("Velocity"), "m/s", "linear_velocity"),
+      vector(t("Spin"), "rad/s", "angular_velocity"),
+      vector(t("Force"), "N", "force"),
+      vector(t("Torque"), "N m", "torque"),
+      truth(t("In the world"), "enabled", true),
+      truth(t("Starts asleep"), "start_asleep", false),
+      truth(t("Fast: never tunnels"), "continuous", false),
     ];
   }
 

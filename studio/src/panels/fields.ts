@@ -2,6 +2,7 @@
 import { element } from "./element";
 import { NOISE, type NumberFormat, PLAIN, readNumber } from "./number_text";
 import { wordText } from "./words";
+import { serverWord, t, translatedWord } from "../language";
 
 /** A change of a number, as it is typed: "+=0.5", "-=0.1", "*2", "/3", "+0.5". */
 export type Change = (value: number) => number;
@@ -48,7 +49,7 @@ export function numberField(label: string, unit: string, commit: (value: number)
     "aria-label": hasUnit ? `${label}, ${unit}` : label,
     autocomplete: "off",
     spellcheck: "false",
-    title: `${label}\nArrow keys: a little more or less, with Shift ten times that\n+0.5, -=0.1, *2: by so much`,
+    title: `${label}\n${t("Arrow keys: a little more or less, with Shift ten times that\n+0.5, -=0.1, *2: by so much")}`,
   });
   const behind = hasUnit ? element("span", { class: "unit" }, unit) : null;
   const root = element("span", { class: "field" }, mark ? element("span", { class: "mark", "aria-hidden": "true" }, mark) : null, input, behind);
@@ -63,7 +64,7 @@ export function numberField(label: string, unit: string, commit: (value: number)
       return each(change);
     }
     const typed = change ? (value === null ? NaN : change(value)) : format.read(input.value);
-    if (Number.isNaN(typed)) return setError(`${format.expected}; a change is typed as +=0.5 or *2`);
+    if (Number.isNaN(typed)) return setError(t("{{expected}}; a change is typed as +=0.5 or *2", { expected: format.expected }));
     setError(null);
     if (typed !== format.read(input.value)) input.value = format.write(typed);
     shown = input.value;
@@ -97,9 +98,9 @@ export function numberField(label: string, unit: string, commit: (value: number)
       if (text !== shown) setError(null);
       shown = text;
       input.value = shown;
-      input.placeholder = next === null ? "differs" : "";
+      input.placeholder = next === null ? t("differs") : "";
       // Words such as "never" have no unit.
-      behind?.classList.toggle("of-word", /^[a-z]/.test(text));
+      behind?.classList.toggle("of-word", /^\p{L}/u.test(text));
     },
   };
 }
@@ -127,7 +128,7 @@ export function vectorField(labels: readonly string[], unit: string, commit: (ty
 /** The last word of a label where it is short, such as x or xy; else its first letter. */
 function markOf(label: string): string {
   const last = label.slice(label.lastIndexOf(" ") + 1);
-  return last.length <= 2 ? last : last[0]!.toLowerCase();
+  return /^[a-z]{1,2}$/i.test(last) ? last : last[0]!.toLowerCase();
 }
 
 /** Yes or no. */
@@ -147,7 +148,7 @@ export function truthField(label: string, commit: (value: boolean) => void): Fie
 
 /** One of the choices, or any word where there are none. */
 export function wordField(label: string, choices: readonly string[], commit: (value: string) => void): Field<string> {
-  if (choices.length === 0) return textField(label, commit, "not known");
+  if (choices.length === 0) return freeWordField(label, commit);
   const select = element("select", { "aria-label": label }, ...choices.map((choice) => element("option", { value: choice }, wordText(choice))));
   select.addEventListener("change", () => commit(select.value));
   const root = element("span", { class: "field" }, select);
@@ -159,6 +160,12 @@ export function wordField(label: string, choices: readonly string[], commit: (va
       select.value = next ?? "";
     },
   };
+}
+
+/** Any word of the server's, such as a category: shown and typed in the user's language. */
+function freeWordField(label: string, commit: (value: string) => void): Field<string> {
+  const field = textField(label, (typed) => commit(serverWord(typed)), t("not known"));
+  return { ...field, set: (next) => field.set(next === null ? null : translatedWord(next)) };
 }
 
 /** Any text; `empty` is shown where there is none. */
@@ -178,7 +185,7 @@ export function textField(label: string, commit: (value: string) => void, empty 
       if (document.activeElement === input && input.value !== shown) return;
       shown = next ?? "";
       input.value = shown;
-      input.placeholder = next === null ? "differs" : empty;
+      input.placeholder = next === null ? t("differs") : empty;
     },
   };
 }

@@ -4,6 +4,7 @@ import { entityOf } from "../document/entity_of_model";
 import type { Parts } from "../parts";
 import { addUnder } from "../tools/ghost";
 import { openScene, openSceneFile } from "./scene_dialogs";
+import { t, translateServerText } from "../language";
 
 const LARGEST_BYTES = 256 * 1024 * 1024;
 
@@ -59,27 +60,27 @@ export class FileDrop {
   private async import(file: File): Promise<string[]> {
     const { notices, server } = this.parts;
     if (file.size > LARGEST_BYTES) {
-      notices.tell({ level: "error", text: `${file.name} is larger than 256 MiB`, remedy: "Import it with “embody import FILE”." });
+      notices.tell({ level: "error", text: t("{{name}} is larger than 256 MiB", { name: file.name }), remedy: t("Import it with “embody import FILE”.") });
       return [];
     }
-    notices.tell({ level: "info", text: `Importing ${file.name}…` });
+    notices.tell({ level: "info", text: t("Importing {{name}}…", { name: file.name }) });
     try {
       const answer = await fetch(server.address(`import?name=${encodeURIComponent(file.name)}`), { method: "POST", body: file });
       const report = (await answer.json()) as ImportAnswer & { error?: ServerError };
       if (report.error) {
-        notices.tell({ level: "error", text: `${report.error.where}: ${report.error.why}`, remedy: report.error.remedy });
+        notices.tell({ level: "error", text: `${report.error.where}: ${translateServerText(report.error.why)}`, remedy: report.error.remedy });
         return [];
       }
-      for (const failure of report.failures) notices.tell({ level: "error", text: `${failure.path}: ${failure.why}` });
-      for (const note of report.notes ?? []) notices.tell({ level: "info", text: `${file.name}: ${note}` });
+      for (const failure of report.failures) notices.tell({ level: "error", text: `${failure.path}: ${translateServerText(failure.why)}` });
+      for (const note of report.notes ?? []) notices.tell({ level: "info", text: `${file.name}: ${translateServerText(note)}` });
       if (report.scene) {
         await openScene(this.parts, { scene: report.scene });
         return [];
       }
-      if (report.failures.length === 0) notices.tell({ level: "info", text: `${file.name} is in the model database` });
+      if (report.failures.length === 0) notices.tell({ level: "info", text: t("{{name}} is in the model database", { name: file.name }) });
       return report.keys ?? [];
     } catch (error) {
-      notices.tell({ level: "error", text: `${file.name} was not imported: ${(error as Error).message}` });
+      notices.tell({ level: "error", text: t("{{name}} was not imported: {{message}}", { name: file.name, message: (error as Error).message }) });
       return [];
     }
   }

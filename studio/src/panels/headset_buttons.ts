@@ -4,10 +4,11 @@ import { icon } from "../tools/icons";
 import { findOffer, type Offer } from "../vr/offer";
 import type { VrSession } from "../vr/session";
 import { element, show } from "./element";
+import { t } from "../language";
 
 /** Buttons that show the scene in a headset; where that is not possible, why and what to do. */
 export class HeadsetButtons {
-  readonly root = element("div", { class: "headset-buttons", role: "group", "aria-label": "Headset" });
+  readonly root = element("div", { class: "headset-buttons", role: "group", "aria-label": t("Headset") });
   /** What was found, for the view options. */
   offer: Offer | null = null;
 
@@ -30,8 +31,8 @@ export class HeadsetButtons {
     if (!offer) return;
     if (offer.vr || offer.ar) {
       this.root.replaceChildren(
-        ...(offer.vr ? [this.button("enter-vr", "Enter VR", () => void session.enter("immersive-vr")), this.scaleButton()] : []),
-        ...(offer.ar ? [this.button("enter-ar", "Enter AR", () => void session.enter("immersive-ar"))] : []),
+        ...(offer.vr ? [this.button("enter-vr", t("Enter VR"), () => void session.enter("immersive-vr")), this.scaleButton()] : []),
+        ...(offer.ar ? [this.button("enter-ar", t("Enter AR"), () => void session.enter("immersive-ar"))] : []),
       );
     } else if (offer.isNeeded) {
       this.root.replaceChildren(element("p", { class: "headset-why", role: "note", "data-testid": "vr-why" }, icon("headset"), element("span", {}, element("strong", {}, `${offer.why}. `), offer.remedy)));
@@ -52,7 +53,7 @@ export class HeadsetButtons {
         class: "headset-button headset-scale",
         "data-testid": "vr-scale",
         "aria-pressed": String(small),
-        title: small ? "Begins with the scene on a table, 1 : 10. Click for life-size." : "Begins life-size. Click for the scene on a table, 1 : 10.",
+        title: small ? t("Begins with the scene on a table, 1 : 10. Click for life-size.") : t("Begins life-size. Click for the scene on a table, 1 : 10."),
         onclick: () => preferences.set("vr", { ...preferences.get("vr"), dollhouse: !small }),
       },
       small ? "1 : 10" : "1 : 1",

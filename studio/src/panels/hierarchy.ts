@@ -6,6 +6,7 @@ import type { Parts } from "../parts";
 import { icon } from "../tools/icons";
 import { setLocked } from "../tools/locks";
 import { element, setText, show } from "./element";
+import { t, translateServerText } from "../language";
 
 /** The tree shows no more rows than this; the filter finds the rest. */
 const MOST_ROWS = 400;
@@ -17,8 +18,8 @@ type Carried = { indices: number[]; from?: string };
 /** All entities by name in their groups: to find and select those that are small, hidden or far away, and to put them into groups by dragging. */
 export class Hierarchy {
   readonly root: HTMLElement;
-  private readonly list = element("ul", { role: "tree", "aria-label": "Entities", "aria-multiselectable": "true", "data-testid": "hierarchy" });
-  private readonly filter = element("input", { type: "search", placeholder: "Find in the scene", "aria-label": "Find in the scene", oninput: () => this.fill() });
+  private readonly list = element("ul", { role: "tree", "aria-label": t("Entities"), "aria-multiselectable": "true", "data-testid": "hierarchy" });
+  private readonly filter = element("input", { type: "search", placeholder: t("Find in the scene"), "aria-label": t("Find in the scene"), oninput: () => this.fill() });
   private readonly folded = new Set<string>();
   private carried: Carried | null = null;
   private rows = 0;
@@ -42,8 +43,8 @@ export class Hierarchy {
     const all = [...entities.values(), ...spawned.values()].filter((entity) => `${nameOf(entity)} ${entity.group ?? ""}`.toLowerCase().includes(words));
     this.rows = 0;
     const rows = this.branch(all, "", 1);
-    if (this.rows > MOST_ROWS) rows.push(element("li", { class: "note" }, "… and more: type a part of a name"));
-    if (all.length === 0) rows.push(element("li", { class: "note" }, words ? "Nothing in the scene has that name" : "The scene is empty"));
+    if (this.rows > MOST_ROWS) rows.push(element("li", { class: "note" }, t("… and more: type a part of a name")));
+    if (all.length === 0) rows.push(element("li", { class: "note" }, words ? t("Nothing in the scene has that name") : t("The scene is empty")));
     const focused = this.focused();
     this.list.replaceChildren(...rows);
     if (focused) this.list.querySelector<HTMLElement>(focused)?.focus();
@@ -55,7 +56,7 @@ export class Hierarchy {
   private warn(): void {
     for (const mark of this.list.querySelectorAll<HTMLElement>(".row-warning")) {
       const index = Number(mark.closest<HTMLElement>("[data-index]")!.dataset["index"]);
-      const text = this.parts.warnings.of(index).map(({ label, why }) => `${label}: ${why}`).join("\n");
+      const text = this.parts.warnings.of(index).map(({ label, why }) => `${translateServerText(label)}: ${translateServerText(why)}`).join("\n");
       show(mark, text !== "");
       mark.title = text;
       setText(mark, text && "⚠");
@@ -113,7 +114,7 @@ export class Hierarchy {
         tabindex: 0,
         draggable: "true",
         "data-group": path,
-        title: "Click: select the group. Double click: rename it",
+        title: t("Click: select the group. Double click: rename it"),
         onclick: choose,
         ondblclick: () => this.rename(title, path),
         onkeydown: (event: KeyboardEvent) => {
@@ -122,7 +123,7 @@ export class Hierarchy {
           else this.key(event, choose);
         },
       },
-      element("button", { class: "fold", "aria-label": open ? "Fold" : "Unfold", tabindex: -1, onclick: flip }, open ? "▾" : "▸"),
+      element("button", { class: "fold", "aria-label": open ? t("Fold") : t("Unfold"), tabindex: -1, onclick: flip }, open ? "▾" : "▸"),
       element("span", {}, path.split("/").at(-1)!),
       element("span", { class: "row-kind" }, String(members.length)),
     );
@@ -138,7 +139,7 @@ export class Hierarchy {
   private row(entity: Entity, level: number): HTMLElement {
     const { parts } = this;
     const isWaiting = parts.document.waiting.has(entity.index);
-    const kind = isWaiting ? "waits for its model" : (entity.shape?.type ?? "model");
+    const kind = isWaiting ? t("waits for its model") : translateServerText(entity.shape?.type ?? "model");
     const choose = (event: MouseEvent | KeyboardEvent): void => {
       event.stopPropagation();
       this.choose([entity.index], event);
@@ -157,7 +158,7 @@ export class Hierarchy {
         onkeydown: (event: KeyboardEvent) => this.key(event, choose),
       },
       element("span", {}, nameOf(entity)),
-      element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
+      element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? t("{{kind}}, spawned", { kind }) : kind),
       element("span", { class: "row-warning", role: "img" }),
       parts.document.spawned.has(entity.index) ? null : this.padlock(entity),
     );
@@ -177,8 +178,8 @@ export class Hierarchy {
       "button",
       {
         class: "plain padlock",
-        title: locked ? "Locked: it keeps its place, size and existence. Click to unlock (L)" : "Lock it where it is (L)",
-        "aria-label": locked ? `Unlock ${name}` : `Lock ${name}`,
+        title: locked ? t("Locked: it keeps its place, size and existence. Click to unlock (L)") : t("Lock it where it is (L)"),
+        "aria-label": locked ? t("Unlock {{name}}", { name }) : t("Lock {{name}}", { name }),
         "aria-pressed": String(locked),
         "data-testid": `lock-${index}`,
         onclick: (event: MouseEvent) => (event.stopPropagation(), setLocked(this.parts, [index], !locked)),
@@ -223,7 +224,7 @@ export class Hierarchy {
 
   private rename(title: HTMLElement, path: string): void {
     const parent = path.includes("/") ? path.slice(0, path.lastIndexOf("/") + 1) : "";
-    const field = element("input", { type: "text", value: path.slice(parent.length), "aria-label": "Name of the group" });
+    const field = element("input", { type: "text", value: path.slice(parent.length), "aria-label": t("Name of the group") });
     let ended = false;
     const end = (keep: boolean): void => {
       if (ended) return;

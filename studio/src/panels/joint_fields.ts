@@ -11,14 +11,15 @@ import { element, setText, show } from "./element";
 import { numberField, textField, truthField, vectorField } from "./fields";
 import { foldingGroup } from "./folding";
 import { numberText } from "./number_text";
+import { t } from "../language";
 
 const KINDS: readonly { type: Joint["type"]; label: string; help: string }[] = [
-  { type: "hinge", label: "Hinge", help: "Turns about one axis, like a door or a wheel" },
-  { type: "slider", label: "Slider", help: "Moves along one axis, like a drawer" },
-  { type: "ball", label: "Ball", help: "Turns freely about one point, like a chain's link" },
-  { type: "fixed", label: "Fixed", help: "Keeps both together as if glued" },
+  { type: "hinge", label: t("Hinge"), help: t("Turns about one axis, like a door or a wheel") },
+  { type: "slider", label: t("Slider"), help: t("Moves along one axis, like a drawer") },
+  { type: "ball", label: t("Ball"), help: t("Turns freely about one point, like a chain's link") },
+  { type: "fixed", label: t("Fixed"), help: t("Keeps both together as if glued") },
 ];
-const AXES: readonly (readonly [string, Vector])[] = [["X", [1, 0, 0]], ["Y up", [0, 1, 0]], ["Z", [0, 0, 1]]];
+const AXES: readonly (readonly [string, Vector])[] = [["X", [1, 0, 0]], [t("Y up"), [0, 1, 0]], ["Z", [0, 0, 1]]];
 /** In a large scene only so many entities and joints are offered. */
 const MOST = 300;
 const WORLD = "";
@@ -48,8 +49,8 @@ export class JointFields {
     private readonly parts: JointParts,
     private readonly tool: JointTool,
   ) {
-    this.group = foldingGroup(parts.preferences, "joints", "Joints", false, this.advice, this.add, this.list);
-    this.root = element("section", { class: "entity", "data-testid": "joint-fields", "aria-label": "Joints" }, this.group);
+    this.group = foldingGroup(parts.preferences, "joints", t("Joints"), false, this.advice, this.add, this.list);
+    this.root = element("section", { class: "entity", "data-testid": "joint-fields", "aria-label": t("Joints") }, this.group);
     this.add.append(...KINDS.map(({ type, label, help }) => element("button", { class: "chip", title: help, "data-testid": `add-joint-${type}`, onclick: () => void this.make(type) }, label)));
     parts.selection.changed.on(() => this.update());
     parts.document.changed.on(({ all, joints, entities }) => (all || joints || entities.length > 0) && this.update());
@@ -69,25 +70,25 @@ export class JointFields {
     const { selection } = this.parts;
     const joints = this.joints();
     const count = selection.indices.length;
-    setText(this.group.querySelector("summary")!, joints.length > 0 ? `Joints (${joints.length})` : "Joints");
+    setText(this.group.querySelector("summary")!, joints.length > 0 ? t("Joints ({{number}})", { number: joints.length }) : t("Joints"));
     show(this.root, count > 0 || joints.length > 0);
     show(this.add, count === 1 || count === 2);
-    setText(this.advice, count === 1 ? "Join it to the world by a:" : count === 2 ? "Join the two by a:" : count > 2 ? "Select one thing, or two, to join them." : "All joints of the scene. Select one thing, or two, to add one.");
+    setText(this.advice, count === 1 ? t("Join it to the world by a:") : count === 2 ? t("Join the two by a:") : count > 2 ? t("Select one thing, or two, to join them.") : t("All joints of the scene. Select one thing, or two, to add one."));
     if (!joints.some(({ index }) => index === this.chosen)) this.chosen = 0;
     this.tool.show(this.group.open ? joints.map(({ index }) => index) : [], this.chosen);
     const shape = JSON.stringify([this.chosen, this.tool.picking, this.tool.turning, joints.slice(0, MOST).map(({ index, type, name, entity_a, entity_b, ...each }) => [index, type, name, entity_a, entity_b, index === this.chosen && ["limit" in each && !!each.limit, "motor" in each && !!each.motor]])]);
     if (anew || shape !== this.shape) {
       this.shape = shape;
       this.refill = null;
-      this.list.replaceChildren(...joints.slice(0, MOST).map((joint) => this.row(joint)), ...(joints.length > MOST ? [element("li", { class: "note" }, `… and ${joints.length - MOST} more`)] : []));
+      this.list.replaceChildren(...joints.slice(0, MOST).map((joint) => this.row(joint)), ...(joints.length > MOST ? [element("li", { class: "note" }, t("… and {{number}} more", { number: joints.length - MOST }))] : []));
     }
     this.refill?.();
   }
 
   private called(index: number | undefined): string {
-    if (index === undefined) return "the world";
+    if (index === undefined) return t("the world");
     const entity = this.parts.document.entity(index);
-    return entity ? nameOf(entity) : `entity ${index}`;
+    return entity ? nameOf(entity) : t("entity {{index}}", { index });
   }
 
   private row(joint: Joint): HTMLElement {
@@ -102,7 +103,7 @@ export class JointFields {
       "div",
       { class: "list-head" },
       element("button", { class: "list-title", "aria-expanded": String(isChosen), "data-testid": `joint-${index}`, onclick: choose }, element("strong", {}, name || label), element("span", { class: "note" }, `${this.called(joint.entity_a)} – ${this.called(joint.entity_b)}`)),
-      element("button", { class: "plain", title: "Delete this joint", "aria-label": `Delete joint ${name || label}`, "data-testid": `joint-delete-${index}`, onclick: () => void this.parts.server.command("joint.remove", { index }) }, icon("bin")),
+      element("button", { class: "plain", title: t("Delete this joint"), "aria-label": t("Delete joint {{name}}", { name: name || label }), "data-testid": `joint-delete-${index}`, onclick: () => void this.parts.server.command("joint.remove", { index }) }, icon("bin")),
     );
     return element("li", { class: isChosen ? "chosen" : "" }, head, isChosen ? this.editor(joint) : null);
   }
@@ -116,32 +117,32 @@ export class JointFields {
     const { tool } = this;
     const now = () => this.parts.document.joints.get(joint.index) ?? joint;
     const place = () => tool.placeOf(now());
-    const name = textField("Name of the joint", (text) => this.change({ name: text }), KINDS.find(({ type }) => type === joint.type)!.label);
-    const anchor = vectorField(["Anchor x", "Anchor y", "Anchor z"], "m", (typed) => this.change({ anchor: withTyped(place()?.anchor.toArray() ?? [0, 0, 0], typed) as Vector }), 0.01);
-    const axis = vectorField(["Axis x", "Axis y", "Axis z"], "", (typed) => this.change({ axis: withTyped(place()?.axis.toArray() ?? [1, 0, 0], typed) as Vector }), 0.05);
-    const collide = truthField("Touch each other", (bodies_collide) => this.change({ bodies_collide }));
+    const name = textField(t("Name of the joint"), (text) => this.change({ name: text }), KINDS.find(({ type }) => type === joint.type)!.label);
+    const anchor = vectorField([t("Anchor x"), t("Anchor y"), t("Anchor z")], "m", (typed) => this.change({ anchor: withTyped(place()?.anchor.toArray() ?? [0, 0, 0], typed) as Vector }), 0.01);
+    const axis = vectorField([t("Axis x"), t("Axis y"), t("Axis z")], "", (typed) => this.change({ axis: withTyped(place()?.axis.toArray() ?? [1, 0, 0], typed) as Vector }), 0.05);
+    const collide = truthField(t("Touch each other"), (bodies_collide) => this.change({ bodies_collide }));
     const rows: (HTMLElement | null)[] = [
-      row("Name", name.root),
-      row("Kind", choice("Kind of joint", KINDS.map(({ type, label }) => [type, label]), joint.type, (type) => this.change({ type }))),
-      row("Between", this.end("First thing", joint.entity_a, (entity_a) => this.change({ entity_a: entity_a ?? null }), true)),
-      row("and", this.end("Second thing", joint.entity_b, (entity_b) => entity_b !== undefined && this.change({ entity_b }), false)),
-      row("Anchor", anchor.root, "Where the joint is"),
-      element("div", { class: "preset-chips" }, element("button", { class: "chip", "aria-pressed": String(tool.picking), "data-testid": "pick-anchor", onclick: () => tool.pick(!tool.picking) }, tool.picking ? "Click on the place…" : "Pick in the picture")),
+      row(t("Name"), name.root),
+      row(t("Kind"), choice(t("Kind of joint"), KINDS.map(({ type, label }) => [type, label]), joint.type, (type) => this.change({ type }))),
+      row(t("Between"), this.end(t("First thing"), joint.entity_a, (entity_a) => this.change({ entity_a: entity_a ?? null }), true)),
+      row(t("and"), this.end(t("Second thing"), joint.entity_b, (entity_b) => entity_b !== undefined && this.change({ entity_b }), false)),
+      row(t("Anchor"), anchor.root, t("Where the joint is")),
+      element("div", { class: "preset-chips" }, element("button", { class: "chip", "aria-pressed": String(tool.picking), "data-testid": "pick-anchor", onclick: () => tool.pick(!tool.picking) }, tool.picking ? t("Click on the place…") : t("Pick in the picture"))),
     ];
     const more = hasAxis(joint) ? [this.limitRows(now), this.motorRows(now)] : [];
     if (hasAxis(joint)) {
       rows.push(
-        row("Axis", axis.root, joint.type === "hinge" ? "What it turns about" : "Along what it slides"),
+        row(t("Axis"), axis.root, joint.type === "hinge" ? t("What it turns about") : t("Along what it slides")),
         element(
           "div",
           { class: "preset-chips" },
           ...AXES.map(([label, vector]) => element("button", { class: "chip", "data-testid": `axis-${label[0]}`, onclick: () => this.change({ axis: vector }) }, label)),
-          element("button", { class: "chip", "aria-pressed": String(tool.turning), "data-testid": "turn-axis", onclick: () => tool.turn(!tool.turning) }, "Turn by handles"),
+          element("button", { class: "chip", "aria-pressed": String(tool.turning), "data-testid": "turn-axis", onclick: () => tool.turn(!tool.turning) }, t("Turn by handles")),
         ),
         ...more.flatMap(({ rows: each }) => each),
       );
     }
-    rows.push(row("Touch each other", collide.root, "Whether the two things collide"));
+    rows.push(row(t("Touch each other"), collide.root, t("Whether the two things collide")));
     this.refill = () => {
       const joined = now();
       const at = place();
@@ -162,10 +163,10 @@ export class JointFields {
     const type = now().type;
     const factor = type === "hinge" ? DEGREE : 1;
     const unit = type === "hinge" ? "°" : "m";
-    const has = truthField("Has limits", (on) => this.change({ limit: on ? FIRST_LIMITS[type] : null }));
+    const has = truthField(t("Has limits"), (on) => this.change({ limit: on ? FIRST_LIMITS[type] : null }));
     const put = (part: Partial<JointLimit>) => this.change({ limit: { ...of(now())!, ...part } });
-    const lower = numberField("Lower limit", unit, (value) => put({ lower: value * factor }), { step: type === "hinge" ? 5 : 0.05 });
-    const upper = numberField("Upper limit", unit, (value) => put({ upper: value * factor }), { step: type === "hinge" ? 5 : 0.05 });
+    const lower = numberField(t("Lower limit"), unit, (value) => put({ lower: value * factor }), { step: type === "hinge" ? 5 : 0.05 });
+    const upper = numberField(t("Upper limit"), unit, (value) => put({ upper: value * factor }), { step: type === "hinge" ? 5 : 0.05 });
     const fill = (joint: Joint): void => {
       const limit = of(joint);
       has.set(limit !== undefined);
@@ -173,17 +174,17 @@ export class JointFields {
       lower.set(rounded(limit.lower / factor));
       upper.set(rounded(limit.upper / factor));
     };
-    const rows = [row("Limits", has.root, type === "hinge" ? "How far it turns, from where it is now" : "How far it slides, from where it is now")];
-    return { rows: of(now()) ? [...rows, row("from", lower.root), row("to", upper.root)] : rows, fill };
+    const rows = [row(t("Limits"), has.root, type === "hinge" ? t("How far it turns, from where it is now") : t("How far it slides, from where it is now"))];
+    return { rows: of(now()) ? [...rows, row(t("from"), lower.root), row(t("to"), upper.root)] : rows, fill };
   }
 
   private motorRows(now: () => Joint): MoreRows {
     const of = (joint: Joint) => ("motor" in joint ? joint.motor : undefined);
     const type = now().type;
-    const has = truthField("Has a motor", (on) => this.change({ motor: on ? FIRST_MOTORS[type] : null }));
+    const has = truthField(t("Has a motor"), (on) => this.change({ motor: on ? FIRST_MOTORS[type] : null }));
     const put = (part: Partial<JointMotor>) => this.change({ motor: { ...of(now())!, ...part } });
-    const speed = numberField("Motor speed", type === "hinge" ? "rad/s" : "m/s", (value) => put({ speed: value }));
-    const force = numberField("Motor strength", type === "hinge" ? "N m" : "N", (value) => put({ max_force: value }));
+    const speed = numberField(t("Motor speed"), type === "hinge" ? "rad/s" : "m/s", (value) => put({ speed: value }));
+    const force = numberField(t("Motor strength"), type === "hinge" ? "N m" : "N", (value) => put({ max_force: value }));
     const fill = (joint: Joint): void => {
       const motor = of(joint);
       has.set(motor !== undefined);
@@ -191,14 +192,14 @@ export class JointFields {
       speed.set(motor.speed ?? 0);
       force.set(motor.max_force);
     };
-    const rows = [row("Motor", has.root, "Drives it")];
-    return { rows: of(now()) ? [...rows, row("speed", speed.root), row("strength", force.root, "At most")] : rows, fill };
+    const rows = [row(t("Motor"), has.root, t("Drives it"))];
+    return { rows: of(now()) ? [...rows, row(t("speed"), speed.root), row(t("strength"), force.root, t("At most"))] : rows, fill };
   }
 
   private end(label: string, value: number | undefined, commit: (index: number | undefined) => void, mayBeWorld: boolean): HTMLElement {
     const entities = [...this.parts.document.entities.values()].slice(0, MOST).map((entity): [string, string] => [String(entity.index), nameOf(entity)]);
     const known = value === undefined || entities.some(([index]) => index === String(value)) ? [] : [[String(value), this.called(value)] as [string, string]];
-    return choice(label, [...(mayBeWorld ? [[WORLD, "the world"] as [string, string]] : []), ...known, ...entities], value === undefined ? WORLD : String(value), (index) => commit(index === WORLD ? undefined : Number(index)));
+    return choice(label, [...(mayBeWorld ? [[WORLD, t("the world")] as [string, string]] : []), ...known, ...entities], value === undefined ? WORLD : String(value), (index) => commit(index === WORLD ? undefined : Number(index)));
   }
 
   /** A joint where the two boxes are nearest, or at the foot of one that hangs on the world. */

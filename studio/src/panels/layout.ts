@@ -3,9 +3,10 @@ import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { icon } from "../tools/icons";
 import { element } from "./element";
+import { t } from "../language";
 
 type Side = "left" | "right";
-const NAMES: Record<Side, string> = { left: "models and entities", right: "properties" };
+const NAMES: Record<Side, string> = { left: t("models and entities"), right: t("properties") };
 /** In a page no wider than this the panels lie over the scene, one at a time (style/narrow.css has the same width). */
 const NARROW = "(max-width: 900px)";
 
@@ -37,8 +38,8 @@ export class Layout {
   get actions(): UserAction[] {
     const fold = (side: Side, key: string): UserAction => ({
       id: `view.fold_${side}`,
-      label: `Fold the panel of ${NAMES[side]}`,
-      group: "View",
+      label: t("Fold the panel of {{panel}}", { panel: NAMES[side] }),
+      group: t("View"),
       keys: [key],
       on: () => !this.isOpen(side),
       run: () => this.toggle(side),
@@ -71,7 +72,7 @@ export class Layout {
       const isOpen = this.isOpen(side);
       this.app.classList.toggle(`${side}-folded`, !isOpen);
       this.panels[side].inert = !isOpen;
-      const label = isOpen ? `Fold ${NAMES[side]}` : `Show ${NAMES[side]}`;
+      const label = isOpen ? t("Fold {{panel}}", { panel: NAMES[side] }) : t("Show {{panel}}", { panel: NAMES[side] });
       this.handles[side].setAttribute("aria-label", label);
       this.handles[side].setAttribute("aria-expanded", String(isOpen));
       this.handles[side].title = label;

@@ -4,6 +4,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import type { BuildTool } from "../tools/build_tool";
 import { element, show } from "./element";
+import { t } from "../language";
 
 /** What stands so much below a level's top is above it already, m. */
 const SLACK = 0.05;
@@ -13,19 +14,19 @@ const USUAL_CEILING = 2.4;
 const SLAB = 0.2;
 
 export function planActions({ view }: Pick<Parts, "view">): UserAction[] {
-  return [{ id: "view.plan", label: "Plan from above", group: "View", keys: ["P"], icon: "plan", on: () => view.rig.isPlan, run: () => view.rig.setPlan(!view.rig.isPlan) }];
+  return [{ id: "view.plan", label: t("Plan from above"), group: t("View"), keys: ["P"], icon: "plan", on: () => view.rig.isPlan, run: () => view.rig.setPlan(!view.rig.isPlan) }];
 }
 
 /** The storeys of the building: which one is built on, and whether those above are shown. Shown with the plan, and wherever a scene has levels. */
 export class LevelBar {
   readonly root: HTMLElement;
   private chosen = 0;
-  private readonly list = element("select", { "aria-label": "Level", "data-testid": "levels" });
+  private readonly list = element("select", { "aria-label": t("Level"), "data-testid": "levels" });
   private readonly hide = element("input", { type: "checkbox", "data-testid": "hide-above" });
-  private readonly name = element("input", { class: "level-name", "aria-label": "Name of the level", "data-testid": "level-name" });
-  private readonly elevation = element("input", { type: "number", step: 0.1, "aria-label": "Elevation, m", "data-testid": "level-elevation" });
-  private readonly height = element("input", { type: "number", step: 0.1, min: 0.1, "aria-label": "Height, m", "data-testid": "level-height" });
-  private readonly remove = element("button", { "data-testid": "level-remove" }, "Remove");
+  private readonly name = element("input", { class: "level-name", "aria-label": t("Name of the level"), "data-testid": "level-name" });
+  private readonly elevation = element("input", { type: "number", step: 0.1, "aria-label": t("Elevation, m"), "data-testid": "level-elevation" });
+  private readonly height = element("input", { type: "number", step: 0.1, min: 0.1, "aria-label": t("Height, m"), "data-testid": "level-height" });
+  private readonly remove = element("button", { "data-testid": "level-remove" }, t("Remove"));
   private readonly fields: HTMLElement;
   private readonly hideLabel: HTMLElement;
 
@@ -33,13 +34,13 @@ export class LevelBar {
     private readonly parts: Pick<Parts, "server" | "document" | "entities" | "view">,
     private readonly build: BuildTool,
   ) {
-    this.hideLabel = element("label", {}, this.hide, "Hide what is above");
-    this.fields = element("span", { class: "level-fields" }, this.name, element("label", {}, "at", this.elevation, "m"), element("label", {}, "high", this.height, "m"), this.remove);
+    this.hideLabel = element("label", {}, this.hide, t("Hide what is above"));
+    this.fields = element("span", { class: "level-fields" }, this.name, element("label", {}, t("at"), this.elevation, "m"), element("label", {}, t("high"), this.height, "m"), this.remove);
     this.root = element(
       "div",
-      { class: "level-bar", role: "toolbar", "aria-label": "Levels", "data-testid": "level-bar" },
+      { class: "level-bar", role: "toolbar", "aria-label": t("Levels"), "data-testid": "level-bar" },
       this.list,
-      element("button", { "data-testid": "level-add", onclick: () => this.add() }, "Add level"),
+      element("button", { "data-testid": "level-add", onclick: () => this.add() }, t("Add level")),
       this.hideLabel,
       this.fields,
     );
@@ -61,8 +62,8 @@ export class LevelBar {
 
   private add(): void {
     const { levels } = this.parts.document;
-    const last = levels.at(-1) ?? { name: "Ground floor", elevation: 0, height: this.build.height };
-    const next: Level = { name: `Level ${Math.max(levels.length, 1)}`, elevation: (last.elevation ?? 0) + (last.height ?? 2.5) + SLAB, height: last.height ?? 2.5 };
+    const last = levels.at(-1) ?? { name: t("Ground floor"), elevation: 0, height: this.build.height };
+    const next: Level = { name: t("Level {{number}}", { number: Math.max(levels.length, 1) }), elevation: (last.elevation ?? 0) + (last.height ?? 2.5) + SLAB, height: last.height ?? 2.5 };
     const all = levels.length > 0 ? [...levels, next] : [last, next];
     this.chosen = all.length - 1;
     this.send(all);
@@ -89,7 +90,7 @@ export class LevelBar {
     // The plan hides it always.
     show(this.hideLabel, !isPlan && levels.length > 0);
     show(this.fields, level !== undefined);
-    this.list.replaceChildren(...levels.map(({ name }, k) => element("option", { selected: k === this.chosen }, name || `Level ${k}`)));
+    this.list.replaceChildren(...levels.map(({ name }, k) => element("option", { selected: k === this.chosen }, name || t("Level {{number}}", { number: k }))));
     if (level) {
       this.name.value = level.name ?? "";
       this.elevation.value = String(level.elevation ?? 0);

@@ -2,6 +2,7 @@
 import type { LibraryFill } from "../connection/messages";
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
+import { countText, t, translateServerText } from "../language";
 
 /** How far the server is with filling the library: there while it does that, and a notice at the end. */
 export class LibraryProgress {
@@ -32,25 +33,25 @@ export class LibraryProgress {
     } else this.bar.removeAttribute("value");
     const left = timeLeft(seconds_left);
     const isAtWork = done < total;
-    const counted = `${done.toLocaleString("en")} of ${total.toLocaleString("en")}${left && ` · ${left}`}`;
-    setText(this.text, `Filling the library: ${isAtWork ? counted : total > 0 ? "the next catalogue is on its way" : "looking for models"}`);
+    const counted = [t("{{done}} of {{total}}", { done: countText(done), total: countText(total) }), left].filter(Boolean).join(" · ");
+    setText(this.text, t("Filling the library: {{progress}}", { progress: isAtWork ? counted : total > 0 ? t("the next catalogue is on its way") : t("looking for models") }));
     setText(this.file, isAtWork ? file : "");
     this.file.title = file;
   }
 
   private tellEnd({ state, added, skipped, failures, notes }: LibraryFill): void {
-    const lights = skipped > 0 ? ` ${skipped} light sources have no shape and were left out.` : "";
-    const bad = failures.length > 0 ? ` ${failures.length} could not be read: ${failures.slice(0, 3).map(({ path }) => path).join(", ")}${failures.length > 3 ? ", …" : ""}.` : "";
+    const lights = skipped > 0 ? t("{{count}} light sources have no shape and were left out.", { count: skipped }) : "";
+    const bad = failures.length > 0 ? t("{{count}} could not be read: {{files}}.", { count: failures.length, files: [...failures.slice(0, 3).map(({ path }) => path), ...(failures.length > 3 ? ["…"] : [])].join(", ") }) : "";
     const level = failures.length > 0 || notes.length > 0 ? "warning" : "info";
-    const text = state === "done" ? `The library is filled: ${added.toLocaleString("en")} new models.` : "Filling the library stopped.";
-    this.parts.notices.tell({ level, text: `${text}${lights}${bad}`, ...(notes.length > 0 && { remedy: notes.join(" ") }) });
+    const text = state === "done" ? t("The library is filled: {{count, number}} new models.", { count: added }) : t("Filling the library stopped.");
+    this.parts.notices.tell({ level, text: [text, lights, bad].filter(Boolean).join(" "), ...(notes.length > 0 && { remedy: notes.map(translateServerText).join(" ") }) });
   }
 }
 
 /** "1 min left": a time for people, coarse where it is long; empty where it is not known. */
 export function timeLeft(seconds: number | null): string {
   if (seconds === null) return "";
-  if (seconds < 10) return "a few seconds left";
-  if (seconds < 55) return `${Math.ceil(seconds / 10) * 10} s left`;
-  return `${Math.ceil(seconds / 60)} min left`;
+  if (seconds < 10) return t("a few seconds left");
+  if (seconds < 55) return t("{{seconds}} s left", { seconds: Math.ceil(seconds / 10) * 10 });
+  return t("{{minutes}} min left", { minutes: Math.ceil(seconds / 60) });
 }

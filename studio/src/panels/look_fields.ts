@@ -4,6 +4,7 @@ import type { Parts } from "../parts";
 import { isOn } from "../view/lamps";
 import { element, show } from "./element";
 import { numberField, truthField, wordField } from "./fields";
+import { t } from "../language";
 
 /** What a lamp gives that is switched on for the first time. */
 const USUAL_LIGHT: Light = { lumen: 800, kelvin: 2700, on: true };
@@ -22,24 +23,24 @@ function common<Value extends string | number | boolean>(entities: readonly Enti
 /** Finish and light of the selected entities. */
 export class LookFields {
   readonly root: HTMLElement;
-  private readonly finish = wordField("Finish", FINISHES, (finish) => this.changeEach(() => ({ finish: finish as Finish })));
-  private readonly on = truthField("Light", (on) => this.changeEach(({ light = NO_LIGHT }) => ({ light: on && light.lumen === 0 ? USUAL_LIGHT : { ...light, on } })));
-  private readonly lumen = numberField("Brightness", "lm", (lumen) => this.changeEach(({ light = NO_LIGHT }) => ({ light: { ...light, lumen } })), { step: 50 });
-  private readonly kelvin = numberField("Colour temperature", "K", (kelvin) => this.changeEach(({ light = NO_LIGHT }) => ({ light: { ...light, kelvin } })), { step: 100 });
-  private readonly finishRow = row("Finish", this.finish.root, "What its surface looks like, over its colour");
-  private readonly lumenRow = row("Brightness", this.lumen.root, "800 lm is a usual lamp, 400 one beside a bed");
-  private readonly kelvinRow = row("Temperature", this.kelvin.root, "2700 K is warm, 4000 K neutral, 6500 K daylight");
+  private readonly finish = wordField(t("Finish"), FINISHES, (finish) => this.changeEach(() => ({ finish: finish as Finish })));
+  private readonly on = truthField(t("Light", { context: "lamp" }), (on) => this.changeEach(({ light = NO_LIGHT }) => ({ light: on && light.lumen === 0 ? USUAL_LIGHT : { ...light, on } })));
+  private readonly lumen = numberField(t("Brightness"), "lm", (lumen) => this.changeEach(({ light = NO_LIGHT }) => ({ light: { ...light, lumen } })), { step: 50 });
+  private readonly kelvin = numberField(t("Colour temperature"), "K", (kelvin) => this.changeEach(({ light = NO_LIGHT }) => ({ light: { ...light, kelvin } })), { step: 100 });
+  private readonly finishRow = row(t("Finish"), this.finish.root, t("What its surface looks like, over its colour"));
+  private readonly lumenRow = row(t("Brightness"), this.lumen.root, t("800 lm is a usual lamp, 400 one beside a bed"));
+  private readonly kelvinRow = row(t("Temperature"), this.kelvin.root, t("2700 K is warm, 4000 K neutral, 6500 K daylight"));
 
   constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection">) {
     this.root = element(
       "section",
-      { class: "entity", "data-testid": "look-fields", "aria-label": "Look" },
+      { class: "entity", "data-testid": "look-fields", "aria-label": t("Look") },
       element(
         "details",
         { class: "group", open: true },
-        element("summary", {}, "Look"),
+        element("summary", {}, t("Look")),
         this.finishRow,
-        row("Light", this.on.root, "Lights what is around it"),
+        row(t("Light", { context: "lamp" }), this.on.root, t("Lights what is around it")),
         this.lumenRow,
         this.kelvinRow,
       ),
@@ -80,8 +81,8 @@ export class LookFields {
 /** Sky and time of day, for the scene's own settings. */
 export function daylightGroup(parts: Pick<Parts, "server" | "document">): { root: HTMLElement; update(): void } {
   const { document: scene, server } = parts;
-  const sky = truthField("Sky", (on) => void server.command("scene.settings", { sky: on }));
-  const slider = element("input", { type: "range", min: "0", max: "24", step: "0.25", "aria-label": "Time of day", "data-testid": "time-of-day" });
+  const sky = truthField(t("Sky"), (on) => void server.command("scene.settings", { sky: on }));
+  const slider = element("input", { type: "range", min: "0", max: "24", step: "0.25", "aria-label": t("Time of day"), "data-testid": "time-of-day" });
   const told = element("span", { class: "unit" });
   let merge = "";
   const tell = () => {
@@ -95,8 +96,8 @@ export function daylightGroup(parts: Pick<Parts, "server" | "document">): { root
     void server.command("scene.settings", { time_of_day: Number(slider.value), merge });
   });
   slider.addEventListener("change", () => (merge = ""));
-  const hour = row("Time of day", element("span", { class: "field" }, slider, told), "Where the sun stands: it rises at 6 and sets at 18");
-  const root = element("details", { class: "group", open: true }, element("summary", {}, "Light"), row("Sky", sky.root, "Sun and sky in place of the Studio's plain light"), hour);
+  const hour = row(t("Time of day"), element("span", { class: "field" }, slider, told), t("Where the sun stands: it rises at 6 and sets at 18"));
+  const root = element("details", { class: "group", open: true }, element("summary", {}, t("Light")), row(t("Sky"), sky.root, t("Sun and sky in place of the Studio's plain light")), hour);
   return {
     root,
     update() {

@@ -6,6 +6,7 @@ import { PRIMITIVES, type Primitive } from "../tools/primitives";
 import type { DragIn } from "./drag_in";
 import { element, setText, show } from "./element";
 import { ModelGrid } from "./model_grid";
+import { countText, t, translateServerText } from "../language";
 
 const SEARCH_DELAY_MS = 150;
 /** While the library fills, models that have come are shown at most so often. */
@@ -22,14 +23,14 @@ export class ModelBrowser {
   readonly root: HTMLElement;
   private readonly words = element("input", {
     type: "search",
-    placeholder: "Search models",
-    "aria-label": "Search models",
+    placeholder: t("Search models"),
+    "aria-label": t("Search models"),
     "data-testid": "search",
     oninput: () => this.searchSoon(),
     onkeydown: (event: KeyboardEvent) => this.wordsKey(event),
   });
   private readonly category = element("select", {
-    "aria-label": "Category",
+    "aria-label": t("Category"),
     "data-testid": "category",
     onchange: () => this.search(),
   });
@@ -104,8 +105,8 @@ export class ModelBrowser {
         "button",
         {
           class: "primitive",
-          title: `${primitive.label}: drag into the scene, or double-click`,
-          "aria-label": `Add ${primitive.label.toLowerCase()}`,
+          title: t("{{label}}: drag into the scene, or double-click", { label: primitive.label }),
+          "aria-label": t("Add {{label}}", { label: primitive.label.toLocaleLowerCase() }),
           "data-testid": `primitive-${primitive.name}`,
           ondblclick: () => void addInFront(this.parts, primitive.entity()),
           onkeydown: (event: KeyboardEvent) => {
@@ -117,7 +118,7 @@ export class ModelBrowser {
       this.dragIn.from(button, () => ({ entity: primitive.entity(), model: null }));
       return button;
     });
-    return element("div", { class: "primitives", role: "group", "aria-label": "Primitives" }, ...buttons);
+    return element("div", { class: "primitives", role: "group", "aria-label": t("Primitives") }, ...buttons);
   }
 
   private async loadCategories(): Promise<void> {
@@ -127,10 +128,10 @@ export class ModelBrowser {
     const total = answer.categories.reduce((sum, each) => sum + each.models, 0);
     const option = (value: string, label: string) => element("option", { value }, label);
     this.category.replaceChildren(
-      option(ALL, `All categories (${total.toLocaleString("en")})`),
-      option(RECENT, "Recently used"),
-      option(FAVOURITES, "Favourites"),
-      ...answer.categories.map(({ category, models }) => option(category, `${category || "no category"} (${models.toLocaleString("en")})`)),
+      option(ALL, t("All categories ({{total}})", { total: countText(total) })),
+      option(RECENT, t("Recently used")),
+      option(FAVOURITES, t("Favourites")),
+      ...answer.categories.map(({ category, models }) => option(category, `${category ? translateServerText(category) : t("no category")} (${countText(models)})`)),
     );
     this.category.value = [...this.category.options].some(({ value }) => value === chosen) ? chosen : ALL;
   }
@@ -144,12 +145,12 @@ export class ModelBrowser {
     const category = this.category.value;
     const { preferences } = this.parts;
     const words = this.words.value.trim();
-    if (category === FAVOURITES) this.showKeys(preferences.get("favourites"), "your favourites");
-    else if (category === RECENT) this.showKeys(preferences.get("recent"), "recently used");
+    if (category === FAVOURITES) this.showKeys(preferences.get("favourites"), t("your favourites"));
+    else if (category === RECENT) this.showKeys(preferences.get("recent"), t("recently used"));
     else {
       const models = words || category ? { ...(words && { words }), ...(category && { category }) } : { all: true as const };
-      const text = [words && `“${words}”`, category && `in ${category}`].filter(Boolean).join(" ");
-      this.parts.found = { models, text: text || "all models" };
+      const text = [words && `“${words}”`, category && t("in {{category}}", { category: translateServerText(category) })].filter(Boolean).join(" ");
+      this.parts.found = { models, text: text || t("all models") };
       this.grid.showSearch({ words, category });
     }
   }
@@ -166,27 +167,27 @@ export class ModelBrowser {
     const difference = (other: ModelSummary) =>
       Math.hypot(...other.size.map((length, axis) => Math.log(Math.max(length, 1e-3) / Math.max(model.size[axis]!, 1e-3)))) + (other.subcategory === model.subcategory ? 0 : 0.5);
     const keys = answer.models.filter(({ key }) => key !== model.key).sort((a, b) => difference(a) - difference(b)).map(({ key }) => key);
-    const text = `like “${model.name}”`;
+    const text = t("like “{{name}}”", { name: model.name });
     this.parts.found = { models: { keys: [model.key, ...keys] }, text };
     await this.grid.showKeys([model.key, ...keys]);
-    setText(this.count, `${keys.length.toLocaleString("en")} ${text}`);
+    setText(this.count, t("{{number}} {{which}}", { number: countText(keys.length), which: text }));
   }
 
   private showCount(total: number): void {
-    setText(this.count, total === 1 ? "1 model" : `${total.toLocaleString("en")} models`);
+    setText(this.count, t("{{count, number}} models", { count: total }));
     show(this.empty, total === 0);
     if (total > 0) return;
     const searched = this.words.value.trim() !== "";
     const isFilling = !searched && this.parts.server.fill?.state === "running";
     if (isFilling) {
-      this.empty.replaceChildren(element("strong", {}, "The library is being filled"), element("p", {}, "Models appear here as they come."));
+      this.empty.replaceChildren(element("strong", {}, t("The library is being filled")), element("p", {}, t("Models appear here as they come.")));
       return;
     }
     this.empty.replaceChildren(
-      element("strong", {}, searched ? `No model matches “${this.words.value.trim()}”` : "No models here yet"),
-      element("p", {}, searched ? "Try fewer or shorter words, or another category." : "Drop a model file onto the scene to import it, or run “embody import”."),
+      element("strong", {}, searched ? t("No model matches “{{words}}”", { words: this.words.value.trim() }) : t("No models here yet")),
+      element("p", {}, searched ? t("Try fewer or shorter words, or another category.") : t("Drop a model file onto the scene to import it, or run “embody import”.")),
     );
-    if (searched) this.empty.append(element("button", { class: "text-button", onclick: () => this.forgetSearch() }, "Show all models"));
+    if (searched) this.empty.append(element("button", { class: "text-button", onclick: () => this.forgetSearch() }, t("Show all models")));
   }
 
   private forgetSearch(): void {

@@ -8,6 +8,7 @@ import type { DragIn } from "./drag_in";
 import { openMenu } from "./context_menu";
 import { element } from "./element";
 import { icon } from "../tools/icons";
+import { t, translateServerText } from "../language";
 
 const PAGE = 60;
 const TILE_WIDTH = 92;
@@ -48,7 +49,7 @@ export class ModelGrid {
       {
         class: "tile-scroll",
         role: "listbox",
-        "aria-label": "Models",
+        "aria-label": t("Models"),
         tabindex: 0,
         "data-testid": "model-grid",
         onscroll: () => this.lay(),
@@ -245,12 +246,12 @@ export class ModelGrid {
     openMenu(
       [
         [
-          { label: "Add to the scene", run: () => this.add(model) },
-          { label: "Others like this", id: "like", run: () => this.likeWanted.emit(model) },
+          { label: t("Add to the scene"), run: () => this.add(model) },
+          { label: t("Others like this"), id: "like", run: () => this.likeWanted.emit(model) },
         ],
         [
           {
-            label: is ? "No favourite any more" : "Favourite",
+            label: is ? t("No favourite any more") : t("Favourite"),
             run: () => this.toggleFavourite(model),
           },
         ],
@@ -270,7 +271,7 @@ export class ModelGrid {
   private markFavourite(tile: HTMLElement, model: ModelSummary): void {
     const is = this.parts.preferences.get("favourites").includes(model.key);
     tile.toggleAttribute("data-favourite", is);
-    tile.setAttribute("aria-description", is ? "a favourite" : "");
+    tile.setAttribute("aria-description", is ? t("a favourite") : "");
   }
 
   /** A star for the mouse; the keyboard has the key F, everybody the menu. A button may not be inside an option. */
@@ -279,7 +280,7 @@ export class ModelGrid {
       event.stopPropagation();
       this.toggleFavourite(model);
     };
-    return element("span", { class: "favourite", "aria-hidden": "true", title: "Favourite", onclick: click }, icon("star"));
+    return element("span", { class: "favourite", "aria-hidden": "true", title: t("Favourite"), onclick: click }, icon("star"));
   }
 
   private modelAt(at: number): ModelSummary | undefined {
@@ -329,9 +330,9 @@ export class ModelGrid {
 
 function describe(model: ModelSummary): string {
   const size = model.size.map((length) => length.toPrecision(3)).join(" × ");
-  const lines = [model.name, `${model.category}${model.subcategory ? ` / ${model.subcategory}` : ""}`, `${size} m`];
-  lines.push(`${model.triangles.toLocaleString("en")} triangles`);
-  if (model.author) lines.push(`by ${model.author}`);
+  const lines = [model.name, [model.category, model.subcategory].filter(Boolean).map(translateServerText).join(" / "), `${size} m`];
+  lines.push(t("{{count, number}} triangles", { count: model.triangles }));
+  if (model.author) lines.push(t("by {{author}}", { author: model.author }));
   if (model.licence) lines.push(model.licence);
   return lines.join("\n");
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+import { t } from "../language";
 // How numbers are written in the panels, and read again: whatever is shown can be typed.
 
 /** Beside numbers of size one, smaller values are rounding errors and shown as 0. */
@@ -7,6 +8,9 @@ export const NOISE = 1e-6;
 const GROUPS = 32;
 const ALL_GROUPS = 2 ** GROUPS - 1;
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** What stands before groups that are left out, in English and in the user's language. */
+const BUT = ["all but", "all except", t("all but {{groups}}", { groups: "" }).trim()];
 
 /** Writes and reads the numbers of a field. `read` gives NaN for what it does not understand. */
 export interface NumberFormat {
@@ -40,34 +44,35 @@ export function readNumber(text: string): number {
   return plain === "" ? NaN : Number(plain);
 }
 
-export const PLAIN: NumberFormat = { write: numberText, read: readNumber, expected: "This is not a number" };
+export const PLAIN: NumberFormat = { write: numberText, read: readNumber, expected: t("This is not a number") };
 
 /** A threshold: an infinite one is reached never. */
 export const THRESHOLD: NumberFormat = {
-  write: (value) => (value === Infinity ? "never" : numberText(value)),
-  read: (text) => (/^(never|none|inf|infinity)$/i.test(text.trim()) ? Infinity : readNumber(text)),
-  expected: "Type a number, or never",
+  write: (value) => (value === Infinity ? t("never") : numberText(value)),
+  read: (text) => (text.trim() === t("never") || /^(never|none|inf|infinity)$/i.test(text.trim()) ? Infinity : readNumber(text)),
+  expected: t("Type a number, or never"),
 };
 
 /** Collision groups, 1 … 32, as the bits of a mask: "all", "none", "1, 3" or "all but 2". */
 export const GROUP_LIST: NumberFormat = {
   write(mask) {
-    if (mask === ALL_GROUPS) return "all";
-    if (mask === 0) return "none";
+    if (mask === ALL_GROUPS) return t("all");
+    if (mask === 0) return t("none");
     const has = (group: number) => Math.floor(mask / 2 ** (group - 1)) % 2 === 1;
     const groups = Array.from({ length: GROUPS }, (_, at) => at + 1);
     const without = groups.filter((group) => !has(group));
-    return without.length < GROUPS / 2 ? `all but ${without.join(", ")}` : groups.filter(has).join(", ");
+    return without.length < GROUPS / 2 ? t("all but {{groups}}", { groups: without.join(", ") }) : groups.filter(has).join(", ");
   },
   read(text) {
     const words = text.trim().toLowerCase();
-    if (words === "all") return ALL_GROUPS;
-    if (words === "none") return 0;
-    const [, but, list] = /^(all but|all except)?(.*)$/.exec(words)!;
-    const groups = new Set(list!.split(/[\s,;]+/).filter(Boolean).map(Number));
+    if (words === "all" || words === t("all")) return ALL_GROUPS;
+    if (words === "none" || words === t("none")) return 0;
+    const but = BUT.find((each) => words.startsWith(each));
+    const list = words.slice(but?.length ?? 0);
+    const groups = new Set(list.split(/[\s,;]+/).filter(Boolean).map(Number));
     if (groups.size === 0 || [...groups].some((group) => !Number.isInteger(group) || group < 1 || group > GROUPS)) return NaN;
     const mask = [...groups].reduce((sum, group) => sum + 2 ** (group - 1), 0);
     return but ? ALL_GROUPS - mask : mask;
   },
-  expected: "Type groups from 1 to 32, such as 1, 3; or all, none, all but 2",
+  expected: t("Type groups from 1 to 32, such as 1, 3; or all, none, all but 2"),
 };

@@ -9,27 +9,28 @@ import { numberField } from "./fields";
 import { userNameField } from "./user_name";
 import type { Theme } from "../view/environment";
 import type { Offer } from "../vr/offer";
+import { t } from "../language";
+import { chosenLanguage, chooseLanguage, type Language, LANGUAGES, TAGS } from "../language/choice";
 
 const DEBUG_LABELS: Record<DebugName, string> = {
-  shapes: "Collision shapes",
-  bounds: "Bounds",
-  contacts: "Contacts",
-  impulses: "Impulses",
-  islands: "Islands",
-  joints: "Joints",
-  masses: "Centres of mass, inertia",
-  particles: "Particles",
-  deformables: "Nodes and edges",
-  trees: "Broad phase",
-  velocities: "Velocities",
-  forces: "Forces",
+  shapes: t("Collision shapes"),
+  bounds: t("Bounds"),
+  contacts: t("Contacts"),
+  impulses: t("Impulses"),
+  islands: t("Islands"),
+  joints: t("Joints"),
+  masses: t("Centres of mass, inertia"),
+  particles: t("Particles"),
+  deformables: t("Nodes and edges"),
+  trees: t("Broad phase"),
+  velocities: t("Velocities"),
+  forces: t("Forces"),
 };
 
 /** For example "1,234 lines and 56 points not drawn"; empty where all are drawn. */
 function leftOutText({ lines, points }: { lines: number; points: number }): string {
-  const counted = (count: number, name: string) => (count === 0 ? [] : [`${count.toLocaleString("en")} ${name}${count === 1 ? "" : "s"}`]);
-  const parts = [...counted(lines, "line"), ...counted(points, "point")];
-  return parts.length === 0 ? "" : `${parts.join(" and ")} not drawn`;
+  const parts = [lines > 0 && t("{{count, number}} lines", { count: lines }), points > 0 && t("{{count, number}} points", { count: points })].filter(Boolean);
+  return parts.length === 0 ? "" : t("{{what}} not drawn", { what: parts.join(t(" and ")) });
 }
 
 /** Debug drawing: a checkbox for each kind, and how much did not fit into the frame. */
@@ -47,15 +48,24 @@ function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): 
     show(leftOut, text !== "");
   };
   tell();
-  const root = element("fieldset", { class: "debug-options" }, element("legend", {}, "See inside the simulation"), ...DEBUG_NAMES.map(line), leftOut);
+  const root = element("fieldset", { class: "debug-options" }, element("legend", {}, t("See inside the simulation")), ...DEBUG_NAMES.map(line), leftOut);
   return { root, end: view.debug.changed.on(tell) };
 }
 
 function themeChoice(preferences: Preferences): HTMLElement {
-  const choices = { system: "as the system", dark: "dark", light: "light" };
+  const choices = { system: t("as the system"), dark: t("dark"), light: t("light") };
   const shown = preferences.followsSystem ? "system" : preferences.get("theme");
   const choose = () => (select.value === "system" ? preferences.useSystemTheme() : preferences.set("theme", select.value as Theme));
   const select = element("select", { "data-testid": "option-theme", onchange: choose }, ...Object.entries(choices).map(([value, label]) => element("option", { value, selected: value === shown }, label)));
+  return select;
+}
+
+/** The languages by their own names; a choice loads the page again. */
+function languageChoice(): HTMLElement {
+  const shown = chosenLanguage() ?? "";
+  const names: [string, string][] = [["", t("as the system")], ...Object.entries(LANGUAGES)];
+  const options = names.map(([value, label]) => element("option", { value, selected: value === shown, ...(value && { lang: TAGS[value as Language] }) }, label));
+  const select = element("select", { "data-testid": "option-language", onchange: () => chooseLanguage((select.value || null) as Language | null) }, ...options);
   return select;
 }
 
@@ -72,16 +82,16 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
   };
   const sounds = element("input", { type: "checkbox", "data-testid": "option-sounds", onchange: () => preferences.set("sounds", sounds.checked) });
   sounds.checked = preferences.get("sounds");
-  const hint = headset?.why ? element("p", { class: "note", "data-testid": "vr-hint" }, `Headset: ${headset.why}. ${headset.remedy}`) : null;
-  const step = numberField("Snap to", "m", (value) => value > 0 && preferences.set("snapLength", value));
-  const angle = numberField("Snap to", "°", (value) => value > 0 && preferences.set("snapAngle", value));
+  const hint = headset?.why ? element("p", { class: "note", "data-testid": "vr-hint" }, t("Headset: {{why}}. {{remedy}}", { why: headset.why, remedy: headset.remedy })) : null;
+  const step = numberField(t("Snap to"), "m", (value) => value > 0 && preferences.set("snapLength", value));
+  const angle = numberField(t("Snap to"), "°", (value) => value > 0 && preferences.set("snapAngle", value));
   step.set(preferences.get("snapLength"));
   angle.set(preferences.get("snapAngle"));
-  const pull = numberField("Strength of the mouse", "N", (value) => value >= 1 && value <= 1e6 && preferences.set("pull", value), { step: 50 });
+  const pull = numberField(t("Strength of the mouse"), "N", (value) => value >= 1 && value <= 1e6 && preferences.set("pull", value), { step: 50 });
   pull.set(preferences.get("pull"));
   const inside = debugList(parts);
   const dialog = openDialog(
-    "View options",
+    t("View options"),
     "options-dialog",
     element(
       "div",
@@ -90,15 +100,16 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view"
       flip("view.fullTint"),
       flip("view.grid"),
       flip("view.collision"),
-      row("Sounds of impacts", sounds),
-      row("Colours", themeChoice(preferences)),
+      row(t("Sounds of impacts"), sounds),
+      row(t("Language"), languageChoice()),
+      row(t("Colours"), themeChoice(preferences)),
       flip("view.quality"),
       flip("tool.snap"),
       inside.root,
-      row("Snapping step when moving", step.root),
-      row("Snapping step when rotating", angle.root),
-      row("How strongly the mouse pulls in a run: one arm has about 400", pull.root),
-      row("Your name in the history of changes", userNameField(parts)),
+      row(t("Snapping step when moving"), step.root),
+      row(t("Snapping step when rotating"), angle.root),
+      row(t("How strongly the mouse pulls in a run: one arm has about 400"), pull.root),
+      row(t("Your name in the history of changes"), userNameField(parts)),
       ...(hint ? [hint] : []),
     ),
   );

@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: MIT
 import type { Parts } from "../parts";
 import { element, show } from "./element";
+import { t } from "../language";
 
 /** Overlays of the scene: the legend of states, the loading bar, hints for an empty scene, and the lost connection. */
 export class Overlays {
   readonly root: HTMLElement;
   private readonly legend = element(
     "div",
-    { class: "legend", "data-testid": "legend", role: "note", "aria-label": "Colours of states" },
-    legendLine("active", "active"),
-    legendLine("wants", "wants to sleep"),
-    legendLine("asleep", "asleep"),
+    { class: "legend", "data-testid": "legend", role: "note", "aria-label": t("Colours of states") },
+    legendLine("active", t("active")),
+    legendLine("wants", t("wants to sleep")),
+    legendLine("asleep", t("asleep")),
   );
-  private readonly loading = element("div", { class: "badge loading", role: "status", "data-testid": "loading" }, "Loading models…");
+  private readonly loading = element("div", { class: "badge loading", role: "status", "data-testid": "loading" }, t("Loading models…"));
   private readonly advice = element(
     "div",
     { class: "advice", "data-testid": "empty-scene" },
-    element("strong", {}, "Nothing here yet"),
-    element("p", {}, "Drag a model or a primitive in from the left, drop a model file here, or open a scene with Ctrl+O."),
+    element("strong", {}, t("Nothing here yet")),
+    element("p", {}, t("Drag a model or a primitive in from the left, drop a model file here, or open a scene with Ctrl+O.")),
   );
   private readonly lost = element(
     "div",
     { class: "lost", role: "alert", "data-testid": "connection-lost" },
-    element("strong", {}, "The server cannot be reached"),
-    element("p", {}, "Is “embody serve” still running? The Studio connects again by itself; what you changed so far is kept by the server."),
+    element("strong", {}, t("The server cannot be reached")),
+    element("p", {}, t("Is “embody serve” still running? The Studio connects again by itself; what you changed so far is kept by the server.")),
   );
   private everConnected = false;
 
@@ -45,7 +46,7 @@ export class Overlays {
     const open = parts.server.isOpen;
     show(this.legend, parts.preferences.get("tint") && parts.playback.simulation.state !== "stopped");
     show(this.loading, parts.entities.loading > 0 || (!parts.server.ready && !this.everConnected));
-    this.loading.textContent = parts.server.ready ? `Loading ${parts.entities.loading} models…` : "Connecting…";
+    this.loading.textContent = parts.server.ready ? t("Loading {{count}} models…", { count: parts.entities.loading }) : t("Connecting…");
     // A new scene has only a floor.
     const { entities } = parts.document;
     const bare = entities.size <= 1 && [...entities.values()].every(({ shape, attributes }) => shape?.type === "plane" || attributes?.["kind"] === "static");

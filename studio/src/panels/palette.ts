@@ -4,6 +4,7 @@ import type { UserAction } from "../tools/actions";
 import { keysOf } from "../tools/keys";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
+import { t } from "../language";
 
 /** The command palette: type a part of a name, Enter runs the marked command. */
 export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly UserAction[]): void {
@@ -12,16 +13,16 @@ export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly
   const list = element("ul", { role: "listbox", id: "palette-list", class: "palette-list" });
   const words = element("input", {
     type: "text",
-    placeholder: "What do you want to do?",
+    placeholder: t("What do you want to do?"),
     role: "combobox",
     "aria-expanded": "true",
     "aria-controls": "palette-list",
-    "aria-label": "Command",
+    "aria-label": t("Command"),
     "data-testid": "palette-input",
     oninput: () => fill(),
     onkeydown: (event: KeyboardEvent) => key(event),
   });
-  const dialog = openDialog("All commands", "palette", words, list);
+  const dialog = openDialog(t("All commands"), "palette", words, list);
 
   const run = (action: UserAction): void => {
     dialog.close();
@@ -45,7 +46,7 @@ export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly
         ),
       ),
     );
-    if (found.length === 0) list.append(element("li", { class: "note" }, "No command has these words"));
+    if (found.length === 0) list.append(element("li", { class: "note" }, t("No command has these words")));
     mark();
   };
   const mark = (): void => {

@@ -8,10 +8,11 @@ import { icon } from "../tools/icons";
 import { openTextDialog } from "./dialogs";
 import { element } from "./element";
 import { openPeople } from "./people_dialog";
+import { t } from "../language";
 
 /** Everybody in the session as coloured initials, while somebody else is here; a click looks where they look. Then what this page may do, if not all, and who else may come. */
 export class PeopleBar {
-  readonly root = element("div", { class: "people", role: "group", "aria-label": "People in this scene", "data-testid": "people" });
+  readonly root = element("div", { class: "people", role: "group", "aria-label": t("People in this scene"), "data-testid": "people" });
 
   constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "people" | "view">) {
     parts.people.changed.on(() => this.fill());
@@ -25,15 +26,15 @@ export class PeopleBar {
     const { edit, run } = people.rights;
     this.root.replaceChildren(
       ...(people.others.length > 0 ? members.map((member) => this.button(member)) : []),
-      ...(edit && run ? [] : [element("span", { class: "may", role: "status", "data-testid": "may" }, `You may ${rightsText(people.rights)}`)]),
-      element("button", { class: "tool-button", title: "People: who is here, and what they may do", "aria-label": "People", "data-testid": "people-open", onclick: () => openPeople(this.parts) }, icon("people")),
+      ...(edit && run ? [] : [element("span", { class: "may", role: "status", "data-testid": "may" }, t("You may {{rights}}", { rights: rightsText(people.rights) }))]),
+      element("button", { class: "tool-button", title: t("People: who is here, and what they may do"), "aria-label": t("People"), "data-testid": "people-open", onclick: () => openPeople(this.parts) }, icon("people")),
     );
   }
 
   private button(member: Member): HTMLElement {
     const isSelf = this.parts.people.isSelf(member);
     const name = memberName(member);
-    const title = isSelf ? `${name} (you): change your name` : `${name}: look where they look`;
+    const title = isSelf ? t("{{name}} (you): change your name", { name }) : t("{{name}}: look where they look", { name });
     const button = element(
       "button",
       { class: isSelf ? "person self" : "person", title, "aria-label": title, "data-testid": `person-${member.client}`, onclick: () => (isSelf ? this.rename() : this.join(member)) },
@@ -47,7 +48,7 @@ export class PeopleBar {
 
   private rename(): void {
     const { preferences } = this.parts;
-    openTextDialog("Your name", { label: "What the others see", value: preferences.get("userName"), action: "Use it", testId: "rename" }, async (name) => {
+    openTextDialog(t("Your name"), { label: t("What the others see"), value: preferences.get("userName"), action: t("Use it"), testId: "rename" }, async (name) => {
       preferences.set("userName", name);
       return null;
     });
@@ -57,6 +58,6 @@ export class PeopleBar {
     const { people, notices, view } = this.parts;
     const look = lookOf(people.presence(member.client));
     if (look) view.rig.goTo(look.position, look.target, performance.now());
-    else notices.tell({ level: "info", text: `It is not known yet where ${memberName(member)} looks` });
+    else notices.tell({ level: "info", text: t("It is not known yet where {{name}} looks", { name: memberName(member) }) });
   }
 }

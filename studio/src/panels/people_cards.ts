@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 import { memberName } from "../document/people";
 import type { Parts } from "../parts";
-import { element, setText } from "./element";
+import { around, element, GAP, setText } from "./element";
+import { t, translateServerText } from "../language";
 
 /** How often a countdown is written. */
 const COUNT_EVERY_MS = 250;
 
 type CardName = "question" | "waiting" | "name";
-const LABELS: Record<CardName, string> = { question: "Somebody wants to open another scene", waiting: "Waiting for the others", name: "Your name" };
+const LABELS: Record<CardName, string> = { question: t("Somebody wants to open another scene"), waiting: t("Waiting for the others"), name: t("Your name") };
 
 type CardParts = Pick<Parts, "preferences" | "server" | "people" | "opening">;
 
@@ -31,11 +32,11 @@ export class PeopleCards {
         void server.command("scene.answer", { question: question.question, agrees });
       };
       this.put("question", question.question, question.until, (count) => [
-        element("p", {}, element("strong", {}, question.text), "."),
-        element("p", { class: "note" }, "Unsaved work stays among the recovered scenes. It is opened in ", count, "."),
+        element("p", {}, element("strong", {}, t("{{sentence}}.", { sentence: translateServerText(question.text) }))),
+        element("p", { class: "note" }, ...around(t("Unsaved work stays among the recovered scenes. It is opened in {{time}}.", { time: GAP }), count)),
         buttons(
-          element("button", { "data-testid": "question-refuse", onclick: () => answer(false) }, "Not now"),
-          element("button", { class: "primary", "data-testid": "question-agree", onclick: () => answer(true) }, "Agree"),
+          element("button", { "data-testid": "question-refuse", onclick: () => answer(false) }, t("Not now")),
+          element("button", { class: "primary", "data-testid": "question-agree", onclick: () => answer(true) }, t("Agree")),
         ),
       ]);
     } else this.remove("question");
@@ -43,16 +44,16 @@ export class PeopleCards {
       // The server tells everybody that the question is over.
       const cancel = () => void server.command("scene.answer", { question: waiting.question, agrees: false });
       this.put("waiting", waiting.question, waiting.until, (count) => [
-        element("p", {}, `Waiting for ${this.names(waiting.asked)}…`),
-        element("p", { class: "note" }, "The scene is opened when they agree, or in ", count, "."),
-        buttons(element("button", { "data-testid": "waiting-cancel", onclick: cancel }, "Cancel")),
+        element("p", {}, t("Waiting for {{names}}…", { names: this.names(waiting.asked) })),
+        element("p", { class: "note" }, ...around(t("The scene is opened when they agree, or in {{time}}.", { time: GAP }), count)),
+        buttons(element("button", { "data-testid": "waiting-cancel", onclick: cancel }, t("Cancel"))),
       ]);
     } else this.remove("waiting");
   }
 
   private names(clients: readonly number[]): string {
     const members = clients.flatMap((client) => this.parts.people.member(client) ?? []);
-    return members.map(memberName).join(", ") || "the others";
+    return members.map(memberName).join(t(", ")) || t("the others");
   }
 
   /** Asks for a name once, when somebody else is here for the first time. */
@@ -62,7 +63,7 @@ export class PeopleCards {
       this.remove("name");
       return;
     }
-    const input = element("input", { type: "text", maxlength: 40, placeholder: "Your name", "aria-label": "Your name", autocomplete: "given-name", "data-testid": "name-input" });
+    const input = element("input", { type: "text", maxlength: 40, placeholder: t("Your name"), "aria-label": t("Your name"), autocomplete: "given-name", "data-testid": "name-input" });
     const done = (name: string): void => {
       preferences.set("nameAsked", true);
       if (name) preferences.set("userName", name);
@@ -73,8 +74,8 @@ export class PeopleCards {
       done(input.value.trim());
     };
     this.put("name", 0, 0, () => [
-      element("p", {}, element("strong", {}, "You are not alone here."), " What may the others call you?"),
-      element("form", { onsubmit: submit }, input, buttons(element("button", { type: "button", "data-testid": "name-later", onclick: () => done("") }, "Not now"), element("button", { class: "primary", type: "submit" }, "OK"))),
+      element("p", {}, element("strong", {}, t("You are not alone here.")), " ", t("What may the others call you?")),
+      element("form", { onsubmit: submit }, input, buttons(element("button", { type: "button", "data-testid": "name-later", onclick: () => done("") }, t("Not now")), element("button", { class: "primary", type: "submit" }, t("OK")))),
     ]);
   }
 

@@ -5,7 +5,8 @@ import type { Parts } from "../parts";
 import { icon } from "../tools/icons";
 import { inkOn } from "../view/name_tag";
 import { openDialog } from "./dialogs";
-import { element } from "./element";
+import { around, element, GAP } from "./element";
+import { t } from "../language";
 
 type PeopleParts = Pick<Parts, "server" | "notices" | "people">;
 
@@ -23,7 +24,7 @@ export function openPeople(parts: PeopleParts): void {
   const fill = (): void => list.replaceChildren(...parts.people.members.map((member) => line(parts, member)));
   const end = parts.people.changed.on(fill);
   fill();
-  const dialog = openDialog("People", "people-dialog", list, invitations(parts));
+  const dialog = openDialog(t("People"), "people-dialog", list, invitations(parts));
   dialog.addEventListener("close", end);
 }
 
@@ -33,9 +34,9 @@ function line(parts: PeopleParts, member: Member): HTMLElement {
   const mark = element("span", { class: "member-mark" });
   mark.style.background = member.color;
   mark.style.color = inkOn(member.color);
-  const who = people.isSelf(member) ? `${name} (you)` : name;
+  const who = people.isSelf(member) ? t("{{name}} (you)", { name }) : name;
   const isFree = people.rights.invite && !member.rights.invite;
-  const may = isFree ? choice(parts, member, name) : element("span", { class: "note" }, member.rights.invite ? "may do everything" : `may ${rightsText(member.rights)}`);
+  const may = isFree ? choice(parts, member, name) : element("span", { class: "note" }, member.rights.invite ? t("may do everything") : t("may {{rights}}", { rights: rightsText(member.rights) }));
   return element("li", { "data-testid": `member-${member.client}` }, mark, element("span", { class: "member-name" }, who), may);
 }
 
@@ -43,39 +44,39 @@ function choice(parts: PeopleParts, member: Member, name: string): HTMLElement {
   const select = element(
     "select",
     {
-      "aria-label": `What ${name} may do`,
+      "aria-label": t("What {{name}} may do", { name }),
       "data-testid": `rights-${member.client}`,
       onchange: () => void parts.server.command("client.set_rights", { client: member.client, ...CHOICES[Number(select.value)]! }),
     },
-    ...CHOICES.map((rights, at) => element("option", { value: at, selected: rights.edit === member.rights.edit && rights.run === member.rights.run }, `may ${rightsText(rights)}`)),
+    ...CHOICES.map((rights, at) => element("option", { value: at, selected: rights.edit === member.rights.edit && rights.run === member.rights.run }, t("may {{rights}}", { rights: rightsText(rights) }))),
   );
   return select;
 }
 
 function invitations({ server, notices, people }: PeopleParts): HTMLElement {
-  if (!people.rights.invite) return element("p", { class: "note" }, "Whoever started Embody can change what you may do, and invite others.");
+  if (!people.rights.invite) return element("p", { class: "note" }, t("Whoever started Embody can change what you may do, and invite others."));
   if (server.invitations.length === 0)
     return element(
       "div",
       {},
-      element("h3", {}, "Invite"),
-      element("p", { class: "note", "data-testid": "invite-how" }, "This Studio answers only its own computer. So that others can come, also in a headset, start it with ", element("code", {}, "embody serve --address 0.0.0.0 --tls"), "."),
+      element("h3", {}, t("Invite")),
+      element("p", { class: "note", "data-testid": "invite-how" }, ...around(t("This Studio answers only its own computer. So that others can come, also in a headset, start it with {{command}}.", { command: GAP }), element("code", {}, "embody serve --address 0.0.0.0 --tls"))),
     );
   const copy = async (url: string): Promise<void> => {
     await navigator.clipboard.writeText(url);
-    notices.tell({ level: "info", text: "The address is copied" });
+    notices.tell({ level: "info", text: t("The address is copied") });
   };
   const address = ({ rights, urls }: Invitation): HTMLElement[] =>
     urls.map((url) => {
-      const field = element("input", { type: "text", readonly: true, value: url, "aria-label": `Address to ${rightsText(rights)}`, onfocus: () => field.select() });
-      const button = navigator.clipboard && element("button", { "aria-label": `Copy the address to ${rightsText(rights)}`, title: "Copy", onclick: () => void copy(url) }, icon("copy"));
-      return element("li", { "data-testid": `invite-${rights.edit ? "build" : rights.run ? "run" : "look"}` }, element("span", {}, `To ${rights.invite ? "do everything" : rightsText(rights)}`), field, button);
+      const field = element("input", { type: "text", readonly: true, value: url, "aria-label": t("Address to {{rights}}", { rights: rightsText(rights) }), onfocus: () => field.select() });
+      const button = navigator.clipboard && element("button", { "aria-label": t("Copy the address to {{rights}}", { rights: rightsText(rights) }), title: t("Copy"), onclick: () => void copy(url) }, icon("copy"));
+      return element("li", { "data-testid": `invite-${rights.edit ? "build" : rights.run ? "run" : "look"}` }, element("span", {}, rights.invite ? t("To do everything") : t("To {{rights}}", { rights: rightsText(rights) })), field, button);
     });
   return element(
     "div",
     {},
-    element("h3", {}, "Invite"),
-    element("p", { class: "note" }, "Whoever has one of these addresses can come as long as this Embody runs. What a guest may do can be changed above."),
+    element("h3", {}, t("Invite")),
+    element("p", { class: "note" }, t("Whoever has one of these addresses can come as long as this Embody runs. What a guest may do can be changed above.")),
     element("ul", { class: "invitations" }, ...server.invitations.flatMap(address)),
   );
 }

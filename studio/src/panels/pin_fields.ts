@@ -5,6 +5,7 @@ import { nameOf } from "../document/scene_document";
 import type { Entity, Pin, Vector } from "../connection/scene_types";
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
+import { t } from "../language";
 
 const WORLD = "";
 /** In a large scene only so many entities are offered to pin to. */
@@ -15,9 +16,9 @@ export class PinFields {
   readonly root: HTMLElement;
   private readonly buttons = element("div", { class: "pin-buttons" });
   private readonly said = element("p", { class: "note", "data-testid": "pin-count" });
-  private readonly holder = element("select", { "aria-label": "Held by", "data-testid": "pin-holder", onchange: () => this.holdBy() });
-  private readonly clamped = element("input", { type: "checkbox", "aria-label": "Clamped", "data-testid": "pin-clamped", onchange: () => this.clamp() });
-  private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: "Holds the rope's direction and twist, too" }, "Clamped"), this.clamped);
+  private readonly holder = element("select", { "aria-label": t("Held by"), "data-testid": "pin-holder", onchange: () => this.holdBy() });
+  private readonly clamped = element("input", { type: "checkbox", "aria-label": t("Clamped"), "data-testid": "pin-clamped", onchange: () => this.clamp() });
+  private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: t("Holds the rope's direction and twist, too") }, t("Clamped")), this.clamped);
   private index = 0;
   private mesh: SimulationMesh | null = null;
   /** The next click on the entity pins it there. */
@@ -27,13 +28,13 @@ export class PinFields {
     const group = element(
       "details",
       { class: "group", open: true },
-      element("summary", {}, "Pins"),
+      element("summary", {}, t("Pins")),
       this.said,
       this.buttons,
-      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: "What the pins are attached to" }, "Held by"), this.holder),
+      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: t("What the pins are attached to") }, t("Held by")), this.holder),
       this.clampedRow,
     );
-    this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": "Pins" }, group);
+    this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": t("Pins") }, group);
     show(this.root, false);
     for (const signal of [parts.selection.changed, parts.document.changed, parts.entities.loaded, parts.playback.changed]) signal.on(() => void this.follow());
     parts.entities.pointed.on(() => void this.follow());
@@ -69,9 +70,9 @@ export class PinFields {
     const { mesh } = this;
     const button = (text: string, title: string, name: string, run: () => void) => element("button", { title, "data-testid": `pin-${name}`, onclick: run }, text);
     this.buttons.replaceChildren(
-      ...(mesh ? placesOf(mesh).map((place) => button(PLACE_LABELS[place], "Pin it there", place, () => this.add((entity) => pinsAt(place, mesh, entity)))) : []),
-      button("A place…", "Then click on the point of the thing to pin", "pick", () => this.pick(!this.picking)),
-      button("Remove all", "Nothing holds it any more", "none", () => this.put([])),
+      ...(mesh ? placesOf(mesh).map((place) => button(PLACE_LABELS[place], t("Pin it there"), place, () => this.add((entity) => pinsAt(place, mesh, entity)))) : []),
+      button(t("A place…"), t("Then click on the point of the thing to pin"), "pick", () => this.pick(!this.picking)),
+      button(t("Remove all"), t("Nothing holds it any more"), "none", () => this.put([])),
     );
   }
 
@@ -82,10 +83,10 @@ export class PinFields {
     parts.view.pins.show(this.index, mesh && pins.length > 0 ? heldNodes(pins, mesh.nodes) : []);
     parts.view.invalidate();
     if (!this.index) return;
-    setText(this.said, this.picking ? "Click on the point to pin; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
+    setText(this.said, this.picking ? t("Click on the point to pin; Escape ends that.") : pins.length === 0 ? t("Nothing holds it.") : t("{{count}} places are held, shown as dots.", { count: pins.length }));
     const holders = [...parts.document.entities.values()].filter(({ index }) => index !== this.index && !parts.entities.clouds.of(index));
     this.holder.replaceChildren(
-      element("option", { value: WORLD }, "the world"),
+      element("option", { value: WORLD }, t("the world")),
       ...holders.slice(0, MOST_HOLDERS).map((each) => element("option", { value: String(each.index) }, nameOf(each))),
     );
     this.holder.value = pins[0]?.to === undefined ? WORLD : String(pins[0].to);
@@ -136,7 +137,7 @@ export class PinFields {
     const places = this.parts.entities.softs.placesOf(this.index);
     const hit = this.parts.view.pick(event.clientX, event.clientY);
     if (!places || hit?.index !== this.index) {
-      setText(this.said, "Click on the selected thing itself, or press Escape.");
+      setText(this.said, t("Click on the selected thing itself, or press Escape."));
       return;
     }
     const node = nearestNode(places, hit.point);

@@ -4,9 +4,10 @@ import type { Recovery } from "../connection/messages";
 import type { Parts } from "../parts";
 import { dateText, dialogButtons, openDialog } from "./dialogs";
 import { element } from "./element";
+import { t } from "../language";
 
 export function editsText(edits: number | undefined): string {
-  return edits === undefined ? "" : `${edits.toLocaleString("en")} ${edits === 1 ? "edit" : "edits"}`;
+  return edits === undefined ? "" : t("{{count, number}} edits", { count: edits });
 }
 
 /** Removes unsaved work for good; whether it was. */
@@ -31,18 +32,18 @@ export function offerRecoveries(parts: Pick<Parts, "preferences" | "server">, fo
       "li",
       { class: "recovery-row", "data-testid": `recovery-${name}` },
       element("span", { class: "recovery-text" }, element("strong", {}, title || name), element("span", { class: "note" }, [dateText(modified), editsText(edits)].filter(Boolean).join(" · "))),
-      element("button", { class: "primary", "data-testid": "recovery-open", onclick: () => (dialog.close(), open(name)) }, "Open"),
-      element("button", { "data-testid": "recovery-discard", onclick: () => void discard() }, "Discard"),
+      element("button", { class: "primary", "data-testid": "recovery-open", onclick: () => (dialog.close(), open(name)) }, t("Open")),
+      element("button", { "data-testid": "recovery-discard", onclick: () => void discard() }, t("Discard")),
     );
     return row;
   };
   list.append(...fresh.map(rowOf));
   const dialog = openDialog(
-    "Unsaved work was found",
+    t("Unsaved work was found"),
     "recovery-dialog",
     list,
-    element("p", { class: "note" }, "What you keep for later is under “Recovered” in “Open a scene”."),
-    dialogButtons(element("button", { "data-testid": "recovery-later", onclick: () => dialog.close() }, "Keep for later")),
+    element("p", { class: "note" }, t("What you keep for later is under “Recovered” in “Open a scene”.")),
+    dialogButtons(element("button", { "data-testid": "recovery-later", onclick: () => dialog.close() }, t("Keep for later"))),
   );
   // Remembered at once: the page may be left before the dialog tells that it was closed. Names of what is gone are forgotten.
   parts.preferences.set("recoveriesKnown", found.map(({ name }) => name));

@@ -6,6 +6,7 @@ import type { Parts } from "../parts";
 import { dateText, dialogButtons, openDialog, openTextDialog } from "./dialogs";
 import { element } from "./element";
 import { discardRecovery, editsText } from "./recovery";
+import { dateLocale, t, translateServerText } from "../language";
 
 type Opener = Pick<Parts, "server" | "notices" | "document" | "opening" | "view">;
 
@@ -23,13 +24,13 @@ function mayLeave(parts: Opener): Promise<boolean> {
       if (await saveScene(parts)) leave();
     };
     const dialog = openDialog(
-      "The scene has unsaved changes",
+      t("The scene has unsaved changes"),
       "unsaved-dialog",
-      element("p", {}, `“${scene.title}” is then kept as it is among the recovered scenes, where “Open a scene” finds it.`),
+      element("p", {}, t("“{{title}}” is then kept as it is among the recovered scenes, where “Open a scene” finds it.", { title: scene.title })),
       dialogButtons(
-        element("button", { onclick: () => dialog.close() }, "Cancel"),
-        element("button", { "data-testid": "save-first", onclick: () => void saveFirst() }, "Save first"),
-        element("button", { class: "primary", "data-testid": "leave-scene", onclick: leave }, "Leave and keep it"),
+        element("button", { onclick: () => dialog.close() }, t("Cancel")),
+        element("button", { "data-testid": "save-first", onclick: () => void saveFirst() }, t("Save first")),
+        element("button", { class: "primary", "data-testid": "leave-scene", onclick: leave }, t("Leave and keep it")),
       ),
     );
     dialog.addEventListener("close", () => resolve(answer));
@@ -61,10 +62,10 @@ export async function openSceneFile(parts: Opener, file: File): Promise<void> {
 
 /** Lists the user's saved scenes, the demo scenes and what was recovered. */
 export async function openScenes(parts: Opener): Promise<void> {
-  const body = element("div", { class: "scene-lists" }, element("p", { class: "note" }, "Loading…"));
+  const body = element("div", { class: "scene-lists" }, element("p", { class: "note" }, t("Loading…")));
   const file = element("input", { type: "file", accept: ".json,application/json", hidden: true });
-  const fromFile = element("button", { onclick: () => file.click() }, "Open a scene file…");
-  const dialog = openDialog("Open a scene", "scenes-dialog", body, dialogButtons(file, fromFile));
+  const fromFile = element("button", { onclick: () => file.click() }, t("Open a scene file…"));
+  const dialog = openDialog(t("Open a scene"), "scenes-dialog", body, dialogButtons(file, fromFile));
   dialog.classList.add("wide");
   const load = (name: string): void => {
     dialog.close();
@@ -87,8 +88,8 @@ export async function openScenes(parts: Opener): Promise<void> {
     };
     const recovered = answer.scenes.some((scene) => scene.kind === "recovery");
     body.replaceChildren(
-      element("div", {}, list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."), recovered ? list("Recovered, never saved", "recovery", "") : null),
-      element("section", {}, element("h3", {}, "Examples"), gallery(of("demo"), load)),
+      element("div", {}, list(t("Saved"), "saved", t("Nothing saved yet. Ctrl+S saves.")), recovered ? list(t("Recovered, never saved"), "recovery", "") : null),
+      element("section", {}, element("h3", {}, t("Examples")), gallery(of("demo"), load)),
     );
     return true;
   };
@@ -102,12 +103,12 @@ export async function openScenes(parts: Opener): Promise<void> {
 
 /** A card with a picture for each example. */
 function gallery(scenes: readonly SceneListing[], load: (name: string) => void): HTMLElement {
-  if (scenes.length === 0) return element("p", { class: "note" }, "No examples found.");
+  if (scenes.length === 0) return element("p", { class: "note" }, t("No examples found."));
   const card = ({ name, title, description }: SceneListing): HTMLElement => {
     const picture = element("img", { src: `gallery/${name}.webp`, alt: "", width: 320, height: 200, loading: "lazy" });
     // An example that was added by hand has none.
     picture.addEventListener("error", () => picture.classList.add("missing"));
-    return element("li", {}, element("button", { class: "gallery-card", "data-testid": `scene-${name}`, onclick: () => load(name) }, picture, element("strong", {}, title || name), element("span", { class: "note" }, description ?? "")));
+    return element("li", {}, element("button", { class: "gallery-card", "data-testid": `scene-${name}`, onclick: () => load(name) }, picture, element("strong", {}, translateServerText(title || name)), element("span", { class: "note" }, translateServerText(description ?? ""))));
   };
   return element("ul", { class: "gallery", "data-testid": "gallery" }, ...scenes.map(card));
 }
@@ -122,7 +123,7 @@ function sceneItem(scene: SceneListing, load: (name: string) => void, discard: (
     note ? element("span", { class: "note" }, note) : null,
   );
   if (kind !== "recovery") return element("li", {}, open);
-  const button = element("button", { "data-testid": `discard-${name}`, "aria-label": `Discard ${scene.title || name}`, onclick: discard }, "Discard");
+  const button = element("button", { "data-testid": `discard-${name}`, "aria-label": t("Discard {{name}}", { name: scene.title || name }), onclick: discard }, t("Discard"));
   return element("li", { class: "recovery-row" }, open, button);
 }
 
@@ -135,7 +136,7 @@ function nameBeside({ kind, name, title }: SceneListing): string {
 export async function saveScene(parts: Pick<Parts, "server" | "notices" | "document" | "view">): Promise<boolean> {
   if (!parts.document.name) return saveAs(parts);
   const saved = await parts.server.command("scene.save", { camera: parts.view.rig.seen() });
-  if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });
+  if (saved) parts.notices.tell({ level: "info", text: t("Saved “{{name}}”", { name: saved.name }) });
   return saved !== undefined;
 }
 
@@ -143,10 +144,10 @@ export async function saveScene(parts: Pick<Parts, "server" | "notices" | "docum
 export function saveAs(parts: Pick<Parts, "server" | "notices" | "document" | "view">): Promise<boolean> {
   const value = parts.document.name || parts.document.title;
   let isSaved = false;
-  const dialog = openTextDialog("Save the scene", { label: "Name", value, action: "Save", testId: "save", note: "It opens again as you see it now." }, async (name) => {
+  const dialog = openTextDialog(t("Save the scene"), { label: t("Name"), value, action: t("Save"), testId: "save", note: t("It opens again as you see it now.") }, async (name) => {
     try {
       const saved = await parts.server.request("scene.save", { name, camera: parts.view.rig.seen() });
-      parts.notices.tell({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
+      parts.notices.tell({ level: "info", text: t("Saved “{{name}}”", { name: saved.name }), remedy: saved.path });
       isSaved = true;
       return null;
     } catch (error) {
@@ -159,14 +160,14 @@ export function saveAs(parts: Pick<Parts, "server" | "notices" | "document" | "v
 /** Keeps a copy of the scene as it is now under a name of its own. */
 export function saveVersion(parts: Pick<Parts, "server" | "notices" | "document" | "view">): void {
   const { document: scene } = parts;
-  const value = `${scene.title}, ${new Date().toLocaleDateString([], { day: "numeric", month: "short" })}`;
-  const note = "The scene is saved too. “Versions of this scene” lists all.";
-  openTextDialog("Save a version", { label: "What this version is called", value, action: "Save version", testId: "version", note }, async (version) => {
-    if (version === "") return "A version needs a name, such as “before the move”.";
+  const value = `${scene.title}, ${new Date().toLocaleDateString(dateLocale, { day: "numeric", month: "short" })}`;
+  const note = t("The scene is saved too. “Versions of this scene” lists all.");
+  openTextDialog(t("Save a version"), { label: t("What this version is called"), value, action: t("Save version"), testId: "version", note }, async (version) => {
+    if (version === "") return t("A version needs a name, such as “before the move”.");
     try {
       const name = scene.name || scene.title;
       const saved = await parts.server.request("scene.save", { name, version, camera: parts.view.rig.seen() });
-      parts.notices.tell({ level: "info", text: `Saved “${saved.name}” and its version “${version}”` });
+      parts.notices.tell({ level: "info", text: t("Saved “{{name}}” and its version “{{version}}”", { name: saved.name, version }) });
       return null;
     } catch (error) {
       return reasonText(error as Error);
@@ -196,7 +197,7 @@ export async function openVersions(parts: Opener): Promise<void> {
       ),
     ),
   );
-  const save = element("button", { onclick: () => (dialog.close(), saveVersion(parts)) }, "Save a version…");
-  const none = element("p", { class: "note" }, "This scene has no versions yet. A version is a copy under a name, to come back to.");
-  const dialog = openDialog("Versions of this scene", "versions-dialog", items.length > 0 ? element("ul", {}, ...items) : none, dialogButtons(save));
+  const save = element("button", { onclick: () => (dialog.close(), saveVersion(parts)) }, t("Save a version…"));
+  const none = element("p", { class: "note" }, t("This scene has no versions yet. A version is a copy under a name, to come back to."));
+  const dialog = openDialog(t("Versions of this scene"), "versions-dialog", items.length > 0 ? element("ul", {}, ...items) : none, dialogButtons(save));
 }

@@ -7,13 +7,14 @@ import { element, setText, show } from "./element";
 import { type Components, type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { foldingGroup } from "./folding";
 import { daylightGroup } from "./look_fields";
+import { t, translateServerText } from "../language";
 
 /** Free fall at the surface, m/s², and density of the air there, kg/m³ (NASA, Planetary Fact Sheets). */
-const PLACES: readonly { name: string; gravity: number; air: number }[] = [
-  { name: "Earth", gravity: 9.81, air: 1.2 },
-  { name: "Moon", gravity: 1.62, air: 0 },
-  { name: "Mars", gravity: 3.71, air: 0.02 },
-  { name: "No weight", gravity: 0, air: 1.2 },
+const PLACES: readonly { id: string; name: string; gravity: number; air: number }[] = [
+  { id: "Earth", name: t("Earth"), gravity: 9.81, air: 1.2 },
+  { id: "Moon", name: t("Moon"), gravity: 1.62, air: 0 },
+  { id: "Mars", name: t("Mars"), gravity: 3.71, air: 0.02 },
+  { id: "No weight", name: t("No weight"), gravity: 0, air: 1.2 },
 ];
 
 type Setting = keyof SceneSettings;
@@ -22,10 +23,10 @@ type Setting = keyof SceneSettings;
 export class SceneFields {
   readonly root: HTMLElement;
   private readonly rows = new Map<Setting, { root: HTMLElement; field: Field<never> }>();
-  private readonly title = textField("Title", (title) => this.set({ title }));
+  private readonly title = textField(t("Title"), (title) => this.set({ title }));
   private readonly places = PLACES.map((place) => ({
     ...place,
-    button: element("button", { class: "chip", title: `Falls with ${place.gravity} m/s², air of ${place.air} kg/m³`, "data-testid": `place-${place.name}`, onclick: () => this.goTo(place) }, place.name),
+    button: element("button", { class: "chip", title: t("Falls with {{gravity}} m/s², air of {{air}} kg/m³", { gravity: place.gravity, air: place.air }), "data-testid": `place-${place.id}`, onclick: () => this.goTo(place) }, place.name),
   }));
   private readonly daylight: ReturnType<typeof daylightGroup>;
   private readonly contents = element("p", { class: "note", "data-testid": "scene-contents" });
@@ -41,45 +42,45 @@ export class SceneFields {
     const truth = (name: Setting, label: string, help: string) => this.row(name, label, help, truthField(label, (value) => this.set({ [name]: value })));
     this.root = element(
       "section",
-      { class: "entity", "aria-label": "Scene", "data-testid": "scene-fields" },
-      element("h2", {}, "Scene"),
+      { class: "entity", "aria-label": t("Scene"), "data-testid": "scene-fields" },
+      element("h2", {}, t("Scene")),
       this.contents,
       foldingGroup(
         preferences,
         "scene.world",
-        "World",
+        t("World"),
         true,
-        labelled("Title", this.title.root, "What the scene is called"),
-        labelled("Where it is", element("span", { class: "field preset-chips" }, ...this.places.map(({ button }) => button)), "Sets weight and air as they are there"),
-        vector("gravity", "Gravity", "m/s²", "How fast things begin to fall, and where to"),
-        labelled("Ground", this.ground, "What everything stands on"),
+        labelled(t("Title"), this.title.root, t("What the scene is called")),
+        labelled(t("Where it is"), element("span", { class: "field preset-chips" }, ...this.places.map(({ button }) => button)), t("Sets weight and air as they are there")),
+        vector("gravity", t("Gravity"), "m/s²", t("How fast things begin to fall, and where to")),
+        labelled(t("Ground"), this.ground, t("What everything stands on")),
       ),
       foldingGroup(
         preferences,
         "scene.air",
-        "Air and wind",
+        t("Air and wind"),
         true,
-        vector("wind", "Wind", "m/s", "Where the air moves to, and how fast: it moves cloth, and slows what flies"),
-        number("gustiness", "Gustiness", "", "How much the wind changes: 0 is steady, 0.2 a usual wind, 1 gusts as strong as the wind"),
-        number("gust_time", "A gust lasts", "s", "How long the wind is stronger or weaker"),
-        number("air_density", "Air density", "kg/m³", "Thick air slows more: 1.2 on Earth, none on the Moon"),
+        vector("wind", t("Wind"), "m/s", t("Where the air moves to, and how fast: it moves cloth, and slows what flies")),
+        number("gustiness", t("Gustiness"), "", t("How much the wind changes: 0 is steady, 0.2 a usual wind, 1 gusts as strong as the wind")),
+        number("gust_time", t("A gust lasts"), "s", t("How long the wind is stronger or weaker")),
+        number("air_density", t("Air density"), "kg/m³", t("Thick air slows more: 1.2 on Earth, none on the Moon")),
       ),
       foldingGroup(
         preferences,
         "scene.accuracy",
-        "Simulation accuracy",
+        t("Simulation accuracy"),
         false,
-        element("p", { class: "note" }, "More exact is slower. What is set here suits nearly all scenes."),
-        number("time_step", "Time step", "s", "Time between two moments that are computed: shorter is more exact, for fast and small things"),
-        number("substeps", "Parts of a step", "", "Each moment is computed in so many parts: more makes stacks, joints and ropes stiffer", 1),
-        truth("shock_propagation", "Firm stacks", "Computes stacks from the ground up, so that high ones stand"),
-        truth("sleeping", "Rest when quiet", "What lies still is not computed until it is touched"),
-        number("time_to_sleep", "Rests after", "s", "How long a thing must lie still before it rests"),
-        number("max_linear_speed", "Fastest speed", "m/s", "Faster things are slowed to this, and you are told"),
-        number("max_angular_speed", "Fastest spin", "rad/s", "The same for turning"),
+        element("p", { class: "note" }, t("More exact is slower. What is set here suits nearly all scenes.")),
+        number("time_step", t("Time step"), "s", t("Time between two moments that are computed: shorter is more exact, for fast and small things")),
+        number("substeps", t("Parts of a step"), "", t("Each moment is computed in so many parts: more makes stacks, joints and ropes stiffer"), 1),
+        truth("shock_propagation", t("Firm stacks"), t("Computes stacks from the ground up, so that high ones stand")),
+        truth("sleeping", t("Rest when quiet"), t("What lies still is not computed until it is touched")),
+        number("time_to_sleep", t("Rests after"), "s", t("How long a thing must lie still before it rests")),
+        number("max_linear_speed", t("Fastest speed"), "m/s", t("Faster things are slowed to this, and you are told")),
+        number("max_angular_speed", t("Fastest spin"), "rad/s", t("The same for turning")),
       ),
       this.daylight.root,
-      element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
+      element("p", { class: "note" }, t("Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer.")),
     );
     parts.document.changed.on(() => this.update());
     parts.selection.changed.on(() => this.update());
@@ -119,8 +120,8 @@ export class SceneFields {
     for (const { button, gravity, air } of this.places) button.setAttribute("aria-pressed", String(x === 0 && z === 0 && Math.abs(y + gravity) < 0.005 && scene.settings.air_density === air));
     this.showGround();
     this.daylight.update();
-    const parts = [count(scene.entities.size, "entity", "entities"), count(scene.joints.size, "joint", "joints"), count(scene.actions.size, "action", "actions")];
-    setText(this.contents, [parts.join(", "), scene.description].filter(Boolean).join(". "));
+    const parts = [t("{{count}} entities", { count: scene.entities.size }), t("{{count}} joints", { count: scene.joints.size }), t("{{count}} actions", { count: scene.actions.size })];
+    setText(this.contents, [parts.join(t(", ")), translateServerText(scene.description)].filter(Boolean).join(t(". ")));
   }
 
   /** The floor, to select; where there is none, a button that adds one. */
@@ -132,22 +133,18 @@ export class SceneFields {
     this.ground.dataset["shown"] = shown;
     this.ground.replaceChildren(
       floor
-        ? element("button", { class: "chip", title: "Select it", "data-testid": "ground", onclick: () => selection.set([floor.index]) }, nameOf(floor))
-        : element("button", { class: "chip", "data-testid": "add-ground", onclick: () => this.addGround() }, "Add a floor"),
+        ? element("button", { class: "chip", title: t("Select it"), "data-testid": "ground", onclick: () => selection.set([floor.index]) }, nameOf(floor))
+        : element("button", { class: "chip", "data-testid": "add-ground", onclick: () => this.addGround() }, t("Add a floor")),
     );
   }
 
   private addGround(): void {
     const [width, depth] = [30, 0.5];
-    const entity = { name: "Floor", category: "floor", shape: { type: "box" as const, half_extents: [width / 2, depth / 2, width / 2] as Vector }, attributes: { kind: "static" }, pose: { position: [0, -depth / 2, 0] as Vector } };
+    const entity = { name: t("Floor"), category: "floor", shape: { type: "box" as const, half_extents: [width / 2, depth / 2, width / 2] as Vector }, attributes: { kind: "static" }, pose: { position: [0, -depth / 2, 0] as Vector } };
     void this.parts.server.command("entity.add", { entity });
   }
 }
 
 function labelled(label: string, field: HTMLElement, help: string): HTMLElement {
   return element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: help }, label), field);
-}
-
-function count(number: number, one: string, many: string): string {
-  return `${number} ${number === 1 ? one : many}`;
 }

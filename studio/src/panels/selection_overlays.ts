@@ -2,12 +2,13 @@
 import type { DebugName } from "../connection/debug_frame";
 import type { Parts } from "../parts";
 import { element, show } from "./element";
+import { t } from "../language";
 
 const OVERLAYS: readonly { name: DebugName; label: string; title: string }[] = [
-  { name: "masses", label: "Centre of mass", title: "The point that it balances on, and three lines as long as the box that turns like it" },
-  { name: "contacts", label: "Contacts", title: "Where it touches, and the direction in which it is pushed" },
-  { name: "forces", label: "Forces", title: "Red: its weight. Violet: the constant force. Orange: what pushes it where it touches. The longest arrow is the largest force" },
-  { name: "velocities", label: "Velocity", title: "An arrow to where it will be in a fifth of a second" },
+  { name: "masses", label: t("Centre of mass"), title: t("The point that it balances on, and three lines as long as the box that turns like it") },
+  { name: "contacts", label: t("Contacts"), title: t("Where it touches, and the direction in which it is pushed") },
+  { name: "forces", label: t("Forces"), title: t("Red: its weight. Violet: the constant force. Orange: what pushes it where it touches. The longest arrow is the largest force") },
+  { name: "velocities", label: t("Velocity"), title: t("An arrow to where it will be in a fifth of a second") },
 ];
 
 /** What the picture shows of the forces on what is selected. */
@@ -27,13 +28,13 @@ export class SelectionOverlays {
     }
     this.collision = element(
       "button",
-      { class: "chip", title: "What collides: the convex parts (C)", "data-testid": "overlay-collision", onclick: () => preferences.set("collision", !preferences.get("collision")) },
-      "Collision shape",
+      { class: "chip", title: t("What collides: the convex parts (C)"), "data-testid": "overlay-collision", onclick: () => preferences.set("collision", !preferences.get("collision")) },
+      t("Collision shape"),
     );
     this.root = element(
       "div",
-      { class: "overlay-chips", role: "group", "aria-label": "Show in the picture", "data-testid": "selection-overlays" },
-      element("span", { class: "note" }, "Show:"),
+      { class: "overlay-chips", role: "group", "aria-label": t("Show in the picture"), "data-testid": "selection-overlays" },
+      element("span", { class: "note" }, t("Show:")),
       ...this.buttons.values(),
       this.collision,
     );

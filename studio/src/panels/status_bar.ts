@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
+import { countText, t } from "../language";
 
 /** Without news for so long, a long command is taken as done. */
 const PROGRESS_SHOWN_MS = 1200;
@@ -11,7 +12,7 @@ export class StatusBar {
   private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
   private readonly work = element("span", { class: "cell", role: "status", "data-testid": "stat-work" });
   private readonly loading = element("span", { class: "cell", role: "status", "data-testid": "stat-loading" });
-  private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.parts.server.command("catalog.stop", {}) }, "Stop");
+  private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.parts.server.command("catalog.stop", {}) }, t("Stop"));
   private workTimer = 0;
   private readonly cells = new Map<string, HTMLElement>();
   private lastFrames = 0;
@@ -25,18 +26,18 @@ export class StatusBar {
     };
     this.root = element(
       "footer",
-      { class: "status-bar", "aria-label": "Statistics", "data-testid": "status-bar" },
-      cell("state", "State of the simulation", "wide"),
-      cell("hint", "The simulation begins from the scene as it is now"),
-      cell("time", "Simulated time"),
-      cell("active", "How many of the movable things move; a heap of grains, a liquid, a cloth or a rope counts as one", "active"),
-      cell("wants", "Things that are quiet and want to sleep", "wants"),
-      cell("asleep", "Things asleep: they cost nothing until something touches them", "asleep"),
-      cell("points", "Grains, drops of liquids and nodes of soft things"),
-      cell("contacts", "Contacts"),
-      cell("step", "Time the computer needs for one step of the simulation"),
-      cell("rate", "Simulated seconds in one second of yours"),
-      cell("fps", "Pictures drawn in the last second; idle: nothing changes, so nothing is drawn"),
+      { class: "status-bar", "aria-label": t("Statistics"), "data-testid": "status-bar" },
+      cell("state", t("State of the simulation"), "wide"),
+      cell("hint", t("The simulation begins from the scene as it is now")),
+      cell("time", t("Simulated time")),
+      cell("active", t("How many of the movable things move; a heap of grains, a liquid, a cloth or a rope counts as one"), "active"),
+      cell("wants", t("Things that are quiet and want to sleep"), "wants"),
+      cell("asleep", t("Things asleep: they cost nothing until something touches them"), "asleep"),
+      cell("points", t("Grains, drops of liquids and nodes of soft things")),
+      cell("contacts", t("Contacts")),
+      cell("step", t("Time the computer needs for one step of the simulation")),
+      cell("rate", t("Simulated seconds in one second of yours")),
+      cell("fps", t("Pictures drawn in the last second; idle: nothing changes, so nothing is drawn")),
       element("span", { class: "spacer" }),
       this.loading,
       this.work,
@@ -47,7 +48,7 @@ export class StatusBar {
     this.showLoading();
     parts.entities.loadingBegan.on(() => this.showLoading());
     parts.entities.loaded.on(() => this.showLoading());
-    parts.server.progress.on(({ client, done, total }) => this.showWork(`Changing models: ${done.toLocaleString("en")} of ${total.toLocaleString("en")}`, client === parts.server.client));
+    parts.server.progress.on(({ client, done, total }) => this.showWork(t("Changing models: {{done}} of {{total}}", { done: countText(done), total: countText(total) }), client === parts.server.client));
     parts.server.catalogChanged.on(() => this.showWork("", false));
     parts.playback.measured.on(() => this.update());
     parts.playback.changed.on(() => this.update());
@@ -68,7 +69,7 @@ export class StatusBar {
   private showLoading(): void {
     const { loading, loadingOf } = this.parts.entities;
     show(this.loading, loading > 0);
-    if (loading > 0) setText(this.loading, `Loading models: ${loadingOf - loading} of ${loadingOf}`);
+    if (loading > 0) setText(this.loading, t("Loading models: {{done}} of {{total}}", { done: loadingOf - loading, total: loadingOf }));
   }
 
   private put(name: string, text: string): void {
@@ -78,31 +79,31 @@ export class StatusBar {
   private update(): void {
     const { server, playback } = this.parts;
     const { statistics, simulation } = playback;
-    this.put("state", { stopped: "Stopped", playing: "Playing", paused: "Paused" }[simulation.state]);
+    this.put("state", { stopped: t("Stopped"), playing: t("Playing"), paused: t("Paused") }[simulation.state]);
     this.put("time", `${Math.max(simulation.time, 0).toFixed(2)} s`);
-    this.put("hint", this.parts.server.ready ? "Press Space to play" : "");
+    this.put("hint", this.parts.server.ready ? t("Press Space to play") : "");
     // Before the first step nothing is measured.
     const begun = simulation.state !== "stopped";
     for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
     // The rate of single steps would show how fast a person presses a key.
     show(this.cells.get("rate")!, simulation.state === "playing");
-    this.put("active", statistics ? `${statistics.active} of ${statistics.things} active` : "– active");
+    this.put("active", statistics ? t("{{active}} of {{things}} active", { active: statistics.active, things: statistics.things }) : t("– active"));
     const points = statistics?.points ?? 0;
-    this.put("points", `${points.toLocaleString("en")} points`);
+    this.put("points", t("{{count, number}} points", { count: points }));
     show(this.cells.get("points")!, begun && points > 0);
-    this.put("wants", `${statistics?.wants_to_sleep ?? "–"} want to sleep`);
-    this.put("asleep", `${statistics?.asleep ?? "–"} asleep`);
-    this.put("contacts", `${statistics?.contacts ?? "–"} contacts`);
-    this.put("step", statistics ? `${statistics.step_ms.toFixed(2)} ms a step` : "– ms a step");
-    this.put("rate", statistics ? `${statistics.real_time_factor.toFixed(2)}× real time` : "–× real time");
+    this.put("wants", t("{{number}} want to sleep", { number: statistics?.wants_to_sleep ?? "–" }));
+    this.put("asleep", t("{{number}} asleep", { number: statistics?.asleep ?? "–" }));
+    this.put("contacts", t("{{number}} contacts", { number: statistics?.contacts ?? "–" }));
+    this.put("step", statistics ? t("{{time}} ms a step", { time: statistics.step_ms.toFixed(2) }) : t("– ms a step"));
+    this.put("rate", statistics ? t("{{factor}}× real time", { factor: statistics.real_time_factor.toFixed(2) }) : t("–× real time"));
     this.connection.dataset["state"] = server.isOpen ? "open" : "closed";
-    setText(this.connection, server.isOpen ? `Connected${server.version ? ` · Embody ${server.version}` : ""}` : "Not connected");
+    setText(this.connection, server.isOpen ? [t("Connected"), server.version && `Embody ${server.version}`].filter(Boolean).join(" · ") : t("Not connected"));
   }
 
   private countFrames(): void {
     const { frames } = this.parts.view;
     const now = performance.now();
-    this.put("fps", frames === this.lastFrames ? "idle" : `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
+    this.put("fps", frames === this.lastFrames ? t("idle") : t("{{rate}} fps", { rate: Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook)) }));
     this.lastFrames = frames;
     this.lastLook = now;
     if (this.parts.playback.playing) this.put("time", `${this.parts.playback.simulation.time.toFixed(2)} s`);

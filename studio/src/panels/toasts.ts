@@ -3,6 +3,7 @@ import type { Notice } from "../connection/notices";
 import type { Parts } from "../parts";
 import { element } from "./element";
 import { icon } from "../tools/icons";
+import { t } from "../language";
 
 const SHOWN_MS = { info: 3500, warning: 8000, error: 12000 };
 /** A message with a button stays longer, so that its reader can decide. */
@@ -11,7 +12,7 @@ const MOST = 4;
 
 /** Short messages in the corner: what went wrong, why, and what to do. */
 export class Toasts {
-  readonly root = element("div", { class: "toasts", role: "log", "aria-live": "polite", "aria-label": "Messages" });
+  readonly root = element("div", { class: "toasts", role: "log", "aria-live": "polite", "aria-label": t("Messages") });
 
   constructor(parts: Pick<Parts, "notices">) {
     parts.notices.told.on((notice) => this.show(notice));
@@ -27,7 +28,7 @@ export class Toasts {
       notice.action
         ? element("button", { class: "text-button", "data-testid": "toast-action", onclick: () => (toast.remove(), notice.action!.run()) }, notice.action.label)
         : null,
-      element("button", { class: "plain", "aria-label": "Close message", onclick: () => toast.remove() }, icon("close")),
+      element("button", { class: "plain", "aria-label": t("Close message"), onclick: () => toast.remove() }, icon("close")),
     );
     this.root.append(toast);
     while (this.root.children.length > MOST) this.root.firstElementChild!.remove();

@@ -5,6 +5,7 @@ import type { Gizmo } from "../tools/gizmo";
 import { keysOf } from "../tools/keys";
 import { element, setText, show } from "./element";
 import { icon } from "../tools/icons";
+import { t, translateServerText } from "../language";
 
 const GROUPS = [
   ["scene.new", "scene.open", "scene.save"],
@@ -19,8 +20,8 @@ const GROUPS_RIGHT = [["catalog.history"], ["view.tint", "view.options", "view.s
 /** The bar at the top: a button for each action, and the scene's own buttons. */
 export class Toolbar {
   readonly root: HTMLElement;
-  private readonly title = element("button", { class: "scene-title", title: "Rename: save under a name", "data-testid": "scene-title" });
-  private readonly sceneButtons = element("div", { class: "tool-group scene-buttons", role: "group", "aria-label": "The scene's buttons" });
+  private readonly title = element("button", { class: "scene-title", title: t("Rename: save under a name"), "data-testid": "scene-title" });
+  private readonly sceneButtons = element("div", { class: "tool-group scene-buttons", role: "group", "aria-label": t("The scene's buttons") });
   private readonly buttons = new Map<UserAction, HTMLButtonElement>();
 
   constructor(
@@ -35,7 +36,7 @@ export class Toolbar {
     this.title.addEventListener("click", () => find("scene.save_as")?.run());
     this.root = element(
       "header",
-      { class: "toolbar", role: "toolbar", "aria-label": "Tools" },
+      { class: "toolbar", role: "toolbar", "aria-label": t("Tools") },
       element("strong", { class: "brand" }, "Embody"),
       this.title,
       ...GROUPS.map(group),
@@ -87,16 +88,16 @@ export class Toolbar {
     const playButton = play && this.buttons.get(play);
     if (playButton) {
       playButton.replaceChildren(icon(playback.playing ? "pause" : "play"));
-      playButton.setAttribute("aria-label", playback.playing ? "Pause" : "Play");
-      playButton.title = `${playback.playing ? "Pause" : "Play"} (Space)`;
+      playButton.setAttribute("aria-label", playback.playing ? t("Pause") : t("Play"));
+      playButton.title = `${playback.playing ? t("Pause") : t("Play")} (Space)`;
     }
     const undo = this.buttonOf("edit.undo");
-    if (undo) undo.title = scene.undo ? `Undo: ${scene.undo} (Ctrl+Z)` : "Nothing to undo";
+    if (undo) undo.title = scene.undo ? t("Undo: {{undo}} (Ctrl+Z)", { undo: translateServerText(scene.undo) }) : t("Nothing to undo");
     const redo = this.buttonOf("edit.redo");
-    if (redo) redo.title = scene.redo ? `Redo: ${scene.redo} (Ctrl+Shift+Z)` : "Nothing to redo";
-    const name = scene.title || scene.name || "Untitled";
+    if (redo) redo.title = scene.redo ? t("Redo: {{redo}} (Ctrl+Shift+Z)", { redo: translateServerText(scene.redo) }) : t("Nothing to redo");
+    const name = scene.title || scene.name || t("Untitled");
     setText(this.title, scene.unsaved ? `${name} •` : name);
-    this.title.setAttribute("aria-label", `Scene ${name}${scene.unsaved ? ", not saved" : ""}`);
+    this.title.setAttribute("aria-label", scene.unsaved ? t("Scene {{name}}, not saved", { name }) : t("Scene {{name}}", { name }));
     document.title = `${scene.unsaved ? "• " : ""}${name} – Embody Studio`;
   }
 
@@ -111,7 +112,7 @@ export class Toolbar {
     for (const { trigger } of this.parts.document.actions.values()) if (trigger.type === "signal" && trigger.button) names.add(trigger.button);
     this.sceneButtons.replaceChildren(
       ...[...names].map((button) =>
-        element("button", { class: "scene-button", title: `A button of this scene: starts “${button}”`, "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
+        element("button", { class: "scene-button", title: t("A button of this scene: starts “{{button}}”", { button }), "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
       ),
     );
     show(this.sceneButtons, names.size > 0);
@@ -119,6 +120,6 @@ export class Toolbar {
 
   private async trigger(button: string): Promise<void> {
     const answer = await this.parts.server.command("action.trigger", { button });
-    if (answer?.started === 0) this.parts.notices.tell({ level: "info", text: `“${button}” does nothing now`, remedy: "Play the scene first; an action may also act only once a run." });
+    if (answer?.started === 0) this.parts.notices.tell({ level: "info", text: t("“{{button}}” does nothing now", { button }), remedy: t("Play the scene first; an action may also act only once a run.") });
   }
 }

@@ -2,6 +2,7 @@
 import type { Parts } from "../parts";
 import type { Signal } from "../signal";
 import { element } from "./element";
+import { t } from "../language";
 
 type TourParts = Pick<Parts, "preferences" | "server" | "document" | "playback" | "selection">;
 
@@ -13,15 +14,15 @@ interface Step {
 }
 
 const STEPS: readonly Step[] = [
-  { title: "Bring something in", text: "Drag a model from the list on the left into the scene. The ghost shows where it comes to stand.", at: "model-grid" },
-  { title: "Let it go", text: "Press play, or Space. Everything falls, rolls and swings as what it is made of.", at: "simulation.play" },
-  { title: "Take hold of it", text: "While it plays, drag a thing with the mouse: you pull at the point that you pressed.", at: "canvas" },
-  { title: "See what it is", text: "Click on a thing. On the right is what it weighs and is made of, where each value comes from, and how to change it.", at: "properties" },
+  { title: t("Bring something in"), text: t("Drag a model from the list on the left into the scene. The ghost shows where it comes to stand."), at: "model-grid" },
+  { title: t("Let it go"), text: t("Press play, or Space. Everything falls, rolls and swings as what it is made of."), at: "simulation.play" },
+  { title: t("Take hold of it"), text: t("While it plays, drag a thing with the mouse: you pull at the point that you pressed."), at: "canvas" },
+  { title: t("See what it is"), text: t("Click on a thing. On the right is what it weighs and is made of, where each value comes from, and how to change it."), at: "properties" },
 ];
 
 /** Four steps for whoever is here for the first time; each goes on by itself once it is done. */
 export class Tour {
-  readonly root = element("section", { class: "tour", role: "region", "aria-label": "First steps", "data-testid": "tour", hidden: true });
+  readonly root = element("section", { class: "tour", role: "region", "aria-label": t("First steps"), "data-testid": "tour", hidden: true });
   private step = -1;
   private things = 0;
 
@@ -68,14 +69,14 @@ export class Tour {
     document.querySelector(`[data-testid="${now.at}"]`)?.classList.add("tour-ring");
     const isLast = step === STEPS.length - 1;
     this.root.replaceChildren(
-      element("p", { class: "tour-count", "aria-live": "polite" }, `${step + 1} of ${STEPS.length}`),
+      element("p", { class: "tour-count", "aria-live": "polite" }, t("{{done}} of {{total}}", { done: step + 1, total: STEPS.length })),
       element("h3", {}, now.title),
       element("p", {}, now.text),
       element(
         "div",
         { class: "card-buttons" },
-        element("button", { "data-testid": "tour-skip", onclick: () => this.go(STEPS.length) }, "Skip the tour"),
-        element("button", { class: "primary", "data-testid": "tour-next", onclick: () => this.go(step + 1) }, isLast ? "Done" : "Next"),
+        element("button", { "data-testid": "tour-skip", onclick: () => this.go(STEPS.length) }, t("Skip the tour")),
+        element("button", { class: "primary", "data-testid": "tour-next", onclick: () => this.go(step + 1) }, isLast ? t("Done") : t("Next")),
       ),
     );
   }

@@ -2,6 +2,7 @@
 import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 import { FILTERING, refold } from "./folding";
+import { searchedText, t } from "../language";
 
 /** Words that people use for values, beside their labels. */
 const SYNONYMS: Record<string, string> = {
@@ -40,11 +41,13 @@ const SYNONYMS: Record<string, string> = {
   wind: "air breeze storm",
 };
 
+const HAN = /\p{Script=Han}/u;
+
 /** Finds values by what people call them, and shows only what was changed: in all groups of a panel. */
 export class ValueSearch {
   readonly root: HTMLElement;
-  private readonly words = element("input", { type: "search", placeholder: "Find a value", "aria-label": "Find a value", "data-testid": "value-search", oninput: () => this.apply() });
-  private readonly changedOnly = element("button", { class: "chip", "aria-pressed": "false", title: "Show only values that were set here by hand", "data-testid": "only-changed", onclick: () => this.flip() }, "Only what I changed");
+  private readonly words = element("input", { type: "search", placeholder: t("Find a value"), "aria-label": t("Find a value"), "data-testid": "value-search", oninput: () => this.apply() });
+  private readonly changedOnly = element("button", { class: "chip", "aria-pressed": "false", title: t("Show only values that were set here by hand"), "data-testid": "only-changed", onclick: () => this.flip() }, t("Only what I changed"));
   private readonly nothing = element("p", { class: "note", "data-testid": "no-value" });
   private isFiltering = false;
   private wanted = 0;
@@ -99,14 +102,17 @@ export class ValueSearch {
       else refold(this.parts.preferences, group);
       if (this.isFiltering && some) ++found;
     }
-    setText(this.nothing, words.length > 0 ? `No value is called “${this.words.value.trim()}”.` : "Nothing was changed by hand here.");
+    setText(this.nothing, words.length > 0 ? t("No value is called “{{words}}”.", { words: this.words.value.trim() }) : t("Nothing was changed by hand here."));
     show(this.nothing, this.isFiltering && found === 0);
   }
 }
 
-/** Whether each word begins a word of the row's label, unit, name or of what people call it. */
+/** Whether each word begins a word of the row's label, unit, name or of what people call it, in English or in the user's language. */
 function matches(row: HTMLElement, words: readonly string[]): boolean {
-  const name = row.dataset["name"] ?? "";
-  const text = ` ${row.querySelector(".attribute-label")?.textContent ?? ""} ${row.querySelector(".unit")?.textContent ?? ""} ${name.replaceAll("_", " ")} ${SYNONYMS[name] ?? ""}`.toLowerCase();
-  return words.every((word) => text.includes(` ${word}`));
+  const { name = "", label = "" } = row.dataset;
+  const shown = row.querySelector(".attribute-label")?.textContent ?? "";
+  const unit = row.querySelector(".unit")?.textContent ?? "";
+  const text = ` ${shown} ${label} ${unit} ${name.replaceAll("_", " ")} ${searchedText(SYNONYMS[name] ?? "")}`.toLowerCase();
+  // Chinese has no spaces between words.
+  return words.every((word) => text.includes(HAN.test(word) ? word : ` ${word}`));
 }

@@ -6,6 +6,7 @@ import { valueText, unitText } from "./attribute_row";
 import { dialogButtons, openDialog } from "./dialogs";
 import { element, show } from "./element";
 import { numberText } from "./number_text";
+import { t, translateServerText } from "../language";
 
 /** Values that are offered to copy although nobody set them. */
 const USUALLY_COPIED = ["surface_material", "mass", "density", "friction_static", "friction_dynamic", "restitution"];
@@ -17,8 +18,8 @@ type ToolParts = Pick<Parts, "server" | "notices" | "document" | "selection">;
 /** Materials by one click, and values copied from one thing to others. */
 export class ValueTools {
   readonly root: HTMLElement;
-  private readonly materials = element("div", { class: "preset-chips", role: "group", "aria-label": "Make it of", "data-testid": "presets" });
-  private readonly copy = element("button", { class: "chip", title: "Remember the values of this thing, to give them to others", "data-testid": "copy-values", onclick: () => this.remember() }, "Copy values");
+  private readonly materials = element("div", { class: "preset-chips", role: "group", "aria-label": t("Make it of"), "data-testid": "presets" });
+  private readonly copy = element("button", { class: "chip", title: t("Remember the values of this thing, to give them to others"), "data-testid": "copy-values", onclick: () => this.remember() }, t("Copy values"));
   private readonly paste = element("button", { class: "chip", "data-testid": "paste-values", onclick: () => void openPaste(this.parts, this.source) });
   private source = 0;
 
@@ -37,13 +38,13 @@ export class ValueTools {
     const { presets } = told;
     const more = element(
       "select",
-      { class: "chip", "aria-label": "Other materials", "data-testid": "more-presets", onchange: () => (more.value && this.apply(more.value), (more.value = "")) },
-      element("option", { value: "" }, "Other…"),
-      ...presets.slice(FIRST_PRESETS).map(({ preset, label }) => element("option", { value: preset }, label)),
+      { class: "chip", "aria-label": t("Other materials"), "data-testid": "more-presets", onchange: () => (more.value && this.apply(more.value), (more.value = "")) },
+      element("option", { value: "" }, t("Other…")),
+      ...presets.slice(FIRST_PRESETS).map(({ preset, label }) => element("option", { value: preset }, translateServerText(label))),
     );
     this.materials.replaceChildren(
-      element("span", { class: "note" }, "Make it of:"),
-      ...presets.slice(0, FIRST_PRESETS).map((each) => element("button", { class: "chip", title: presetText(each), "data-testid": `preset-${each.preset}`, onclick: () => this.apply(each.preset) }, each.label)),
+      element("span", { class: "note" }, t("Make it of:")),
+      ...presets.slice(0, FIRST_PRESETS).map((each) => element("button", { class: "chip", title: presetText(each), "data-testid": `preset-${each.preset}`, onclick: () => this.apply(each.preset) }, translateServerText(each.label))),
       more,
     );
   }
@@ -56,7 +57,7 @@ export class ValueTools {
     this.source = this.parts.selection.indices[0] ?? 0;
     this.update();
     const name = nameOf(this.parts.document.entity(this.source)!);
-    this.parts.notices.tell({ level: "info", text: `The values of ${name} are ready`, remedy: "Select other things and choose “Paste values”." });
+    this.parts.notices.tell({ level: "info", text: t("The values of {{name}} are ready", { name }), remedy: t("Select other things and choose “Paste values”.") });
   }
 
   private update(): void {
@@ -65,14 +66,14 @@ export class ValueTools {
     show(this.root, selection.indices.length > 0);
     show(this.copy, selection.indices.length === 1);
     show(this.paste, source !== undefined && selection.indices.some((index) => index !== this.source));
-    if (source) this.paste.textContent = `Paste values of ${nameOf(source)}…`;
+    if (source) this.paste.textContent = t("Paste values of {{name}}…", { name: nameOf(source) });
   }
 }
 
 /** What a material brings, and where that is from. */
 function presetText({ values, source }: MaterialPreset): string {
-  const lines = values.map(({ label, value, unit }) => `${label} ${numberText(value)}${unit && unit !== "1" ? ` ${unit}` : ""}`);
-  return `${lines.join("\n")}\n${source}`;
+  const lines = values.map(({ label, value, unit }) => `${translateServerText(label)} ${numberText(value)}${unit && unit !== "1" ? ` ${unit}` : ""}`);
+  return `${lines.join("\n")}\n${translateServerText(source)}`;
 }
 
 /** Asks which values to give to the selection; those that a person set are ticked. */
@@ -86,23 +87,23 @@ async function openPaste(parts: ToolParts, from: number): Promise<void> {
   const boxes = offered.map((entry) => {
     const box = element("input", { type: "checkbox", value: entry.name, "data-testid": `paste-${entry.name}`, onchange: () => update() });
     box.checked = anySet ? entry.overridden : entry.name === "surface_material";
-    return { box, row: element("label", { class: "option" }, box, element("span", {}, entry.label), element("span", { class: "note" }, `${entryText(entry)}${entry.overridden ? ", set by hand" : ""}`)) };
+    return { box, row: element("label", { class: "option" }, box, element("span", {}, translateServerText(entry.label)), element("span", { class: "note" }, entry.overridden ? t("{{value}}, set by hand", { value: entryText(entry) }) : entryText(entry))) };
   });
   const run = async (): Promise<void> => {
     const names = boxes.flatMap(({ box }) => (box.checked ? [box.value] : []));
     const done = await parts.server.command("entity.copy_attributes", { from, indices, names });
     if (!done) return;
     dialog.close();
-    const left = new Set(done.skipped.map(({ label }) => label.toLowerCase()));
-    if (left.size > 0) parts.notices.tell({ level: "info", text: `${[...left].join(", ")} ${left.size === 1 ? "does" : "do"} not concern all of them and ${left.size === 1 ? "was" : "were"} left out there` });
+    const left = new Set(done.skipped.map(({ label }) => translateServerText(label).toLowerCase()));
+    if (left.size > 0) parts.notices.tell({ level: "info", text: t("{{names}} do not concern all of them and were left out there", { count: left.size, names: [...left].join(t(", ")) }) });
   };
   const go = element("button", { class: "primary", "data-testid": "paste-go", onclick: () => void run() });
   const update = (): void => {
     const count = boxes.filter(({ box }) => box.checked).length;
     go.disabled = count === 0;
-    go.textContent = `Give ${count} ${count === 1 ? "value" : "values"} to ${indices.length} ${indices.length === 1 ? "thing" : "things"}`;
+    go.textContent = t("Give {{values}} to {{things}}", { values: t("{{count}} values", { count }), things: t("{{count}} things", { count: indices.length }) });
   };
-  const dialog = openDialog(`Values of ${nameOf(source)}`, "paste-values-dialog", element("div", { class: "options" }, ...boxes.map(({ row }) => row)), dialogButtons(element("button", { onclick: () => dialog.close() }, "Cancel"), go));
+  const dialog = openDialog(t("Values of {{name}}", { name: nameOf(source) }), "paste-values-dialog", element("div", { class: "options" }, ...boxes.map(({ row }) => row)), dialogButtons(element("button", { onclick: () => dialog.close() }, t("Cancel")), go));
   update();
 }
 

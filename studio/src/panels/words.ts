@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
+import { t, translateServerText } from "../language";
 // The registry's words as people read them.
 
 const WORDS: Record<string, string> = {
-  fluid: "liquid",
-  granular: "grains",
-  visual: "only drawn",
-  free: "anywhere",
-  pair_table: "measured for the pair",
-  own: "its own",
-  average: "mean of both",
-  geometric_mean: "geometric mean of both",
-  minimum: "the lower of both",
-  maximum: "the higher of both",
-  multiply: "product of both",
-  decomposition: "several convex parts",
-  trimesh: "its triangles",
+  fluid: t("liquid"),
+  granular: t("grains"),
+  visual: t("only drawn"),
+  free: t("anywhere"),
+  pair_table: t("measured for the pair"),
+  own: t("its own"),
+  average: t("mean of both"),
+  geometric_mean: t("geometric mean of both"),
+  minimum: t("the lower of both"),
+  maximum: t("the higher of both"),
+  multiply: t("product of both"),
+  decomposition: t("several convex parts"),
+  trimesh: t("its triangles"),
 };
 
 export function wordText(word: string): string {
-  return WORDS[word] ?? word.replaceAll("_", " ");
+  return WORDS[word] ?? translateServerText(word.replaceAll("_", " "));
 }

@@ -7,6 +7,7 @@ import type { Parts } from "../parts";
 import type { DrawablePart } from "../view/drawable";
 import { colorOf } from "../view/entity_view";
 import { MomentView } from "./moment_view";
+import { t } from "../language";
 
 /** Poses a second. */
 const SAMPLES_PER_SECOND = 30;
@@ -53,10 +54,10 @@ export async function makeAnimation(
     const drawable = entities.drawableOf(index);
     if (!entity || !drawable || entity.enabled === false) continue;
     if (entities.clouds.of(index)) {
-      still.push(`${nameOf(entity)} is left out: grains and liquids have no form of their own`);
+      still.push(t("{{name}} is left out: grains and liquids have no form of their own", { name: nameOf(entity) }));
       continue;
     }
-    if (entities.softs.has(index)) still.push(`${nameOf(entity)} moves as a whole, in its present form`);
+    if (entities.softs.has(index)) still.push(t("{{name}} moves as a whole, in its present form", { name: nameOf(entity) }));
     const node = new Group();
     node.name = `${nameOf(entity)} ${index}`;
     node.position.fromArray(motion.positions);
@@ -68,7 +69,7 @@ export async function makeAnimation(
     tracks.push(new VectorKeyframeTrack(`${node.uuid}.position`, motion.times, motion.positions));
     tracks.push(new QuaternionKeyframeTrack(`${node.uuid}.quaternion`, motion.times, motion.rotations));
   }
-  const animations = tracks.length > 0 ? [new AnimationClip("Run", to - from, tracks)] : [];
+  const animations = tracks.length > 0 ? [new AnimationClip(t("Run"), to - from, tracks)] : [];
   const made = (await new GLTFExporter().parseAsync(scene, { binary: true, trs: true, animations })) as ArrayBuffer;
   return { file: new Blob([made], { type: "model/gltf-binary" }), still };
 }

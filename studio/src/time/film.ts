@@ -4,6 +4,7 @@ import type { Parts } from "../parts";
 import { Capture } from "../view/capture";
 import { type FilmPlan, picturesOf } from "./film_plan";
 import { MomentView } from "./moment_view";
+import { t } from "../language";
 
 /** Bits for each pixel of a picture: sharp edges and flat colours as here stay clean. */
 const BITS_PER_PIXEL = 0.12;
@@ -11,8 +12,8 @@ const LEAST_BITRATE = 1e6;
 
 /** Why this browser makes no films; null where it does. */
 export async function filmHindrance(width: number, height: number): Promise<string | null> {
-  if (typeof VideoEncoder === "undefined") return "This browser cannot encode video (it has no WebCodecs, or the page is not secure). Chromium, Edge and newer Firefox and Safari can, over https or on localhost.";
-  if (!(await getFirstEncodableVideoCodec(["vp9", "vp8"], { width, height }))) return "This browser encodes neither VP9 nor VP8 in this size. Choose a smaller one.";
+  if (typeof VideoEncoder === "undefined") return t("This browser cannot encode video (it has no WebCodecs, or the page is not secure). Chromium, Edge and newer Firefox and Safari can, over https or on localhost.");
+  if (!(await getFirstEncodableVideoCodec(["vp9", "vp8"], { width, height }))) return t("This browser encodes neither VP9 nor VP8 in this size. Choose a smaller one.");
   return null;
 }
 
@@ -27,7 +28,7 @@ export async function makeFilm(
   signal: AbortSignal,
 ): Promise<Blob | null> {
   const codec = await getFirstEncodableVideoCodec(["vp9", "vp8"], { width: plan.width, height: plan.height });
-  if (!codec) throw new Error("This browser encodes neither VP9 nor VP8 in this size.");
+  if (!codec) throw new Error(t("This browser encodes neither VP9 nor VP8 in this size."));
   const canvas = new OffscreenCanvas(plan.width, plan.height);
   canvas.getContext("2d");
   const bitrate = Math.max(LEAST_BITRATE, Math.round(BITS_PER_PIXEL * plan.width * plan.height * plan.fps));

@@ -5,13 +5,14 @@ import type { Parts } from "../parts";
 import { download } from "./download";
 import { type FilmPlan, picturesOf } from "./film_plan";
 import { PICTURE_SIZES } from "./sizes";
+import { t } from "../language";
 
 const RATES: readonly [number, string][] = [
-  [2, "twice as fast"],
-  [1, "real time"],
-  [0.5, "½ speed"],
-  [0.25, "¼ speed"],
-  [0.1, "⅒ speed"],
+  [2, t("twice as fast")],
+  [1, t("real time")],
+  [0.5, t("½ speed")],
+  [0.25, t("¼ speed")],
+  [0.1, t("⅒ speed")],
 ];
 
 /** Asks what to film, and makes the film. */
@@ -23,17 +24,17 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
     made.value = String(value);
     return made;
   };
-  const from = number("From, seconds", "film-from", take.state.start);
-  const to = number("To, seconds", "film-to", take.state.end);
-  const rate = choice("Speed", "film-rate", RATES, 1);
-  const fps = choice("Pictures a second", "film-fps", [[24, "24 a second"], [30, "30 a second"], [60, "60 a second"]], 30);
-  const size = choice("Size", "film-size", PICTURE_SIZES.map(([width, height]) => [`${width}x${height}`, `${width} × ${height}`] as const), "1280x720");
-  const camera = choice("Camera", "film-camera", [[0, "stands as it is now"], [1, "turns once about what it looks at"], [-1, "turns once the other way"]], 0);
+  const from = number(t("From, seconds"), "film-from", take.state.start);
+  const to = number(t("To, seconds"), "film-to", take.state.end);
+  const rate = choice(t("Speed"), "film-rate", RATES, 1);
+  const fps = choice(t("Pictures a second"), "film-fps", [[24, t("24 a second")], [30, t("30 a second")], [60, t("60 a second")]], 30);
+  const size = choice(t("Size"), "film-size", PICTURE_SIZES.map(([width, height]) => [`${width}x${height}`, `${width} × ${height}`] as const), "1280x720");
+  const camera = choice(t("Camera"), "film-camera", [[0, t("stands as it is now")], [1, t("turns once about what it looks at")], [-1, t("turns once the other way")]], 0);
   const note = element("p", { class: "note", role: "status", "data-testid": "film-note" });
-  const bar = element("progress", { "aria-label": "Progress", "data-testid": "film-progress", max: 1, value: 0 });
-  const start = element("button", { class: "primary", type: "submit", "data-testid": "film-start" }, "Make the film");
-  const gltf = element("button", { type: "button", "data-testid": "film-gltf", title: "A binary glTF file of all things and their motion, for Blender and others", onclick: () => void run(exportAnimation) }, "Save as glTF animation");
-  const stop = element("button", { type: "button", "data-testid": "film-cancel", onclick: () => dialog.close() }, "Cancel");
+  const bar = element("progress", { "aria-label": t("Progress"), "data-testid": "film-progress", max: 1, value: 0 });
+  const start = element("button", { class: "primary", type: "submit", "data-testid": "film-start" }, t("Make the film"));
+  const gltf = element("button", { type: "button", "data-testid": "film-gltf", title: t("A binary glTF file of all things and their motion, for Blender and others"), onclick: () => void run(exportAnimation) }, t("Save as glTF animation"));
+  const stop = element("button", { type: "button", "data-testid": "film-cancel", onclick: () => dialog.close() }, t("Cancel"));
   const running = new AbortController();
 
   const plan = (): FilmPlan => {
@@ -41,15 +42,15 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
     return { from: Number(from.value), to: Number(to.value), rate: Number(rate.value), fps: Number(fps.value), width: width!, height: height!, turns: Number(camera.value) };
   };
   const fault = ({ from: first, to: last }: FilmPlan): string | null => {
-    if (!Number.isFinite(first) || !Number.isFinite(last) || last <= first) return "The end must come after the beginning.";
+    if (!Number.isFinite(first) || !Number.isFinite(last) || last <= first) return t("The end must come after the beginning.");
     const { start: begin, end } = take.state;
-    return first < begin - 0.01 || last > end + 0.01 ? `Recorded is ${begin.toFixed(2)} … ${end.toFixed(2)} s.` : null;
+    return first < begin - 0.01 || last > end + 0.01 ? t("Recorded is {{begin}} … {{end}} s.", { begin: begin.toFixed(2), end: end.toFixed(2) }) : null;
   };
   const describe = (): void => {
     const wanted = plan();
     const wrong = fault(wanted);
     start.disabled = gltf.disabled = wrong !== null;
-    setText(note, wrong ?? `${((wanted.to - wanted.from) / wanted.rate).toFixed(1)} s of film, ${picturesOf(wanted)} pictures. Nobody else sees anything of it.`);
+    setText(note, wrong ?? t("{{seconds}} s of film, {{pictures}} pictures. Nobody else sees anything of it.", { seconds: ((wanted.to - wanted.from) / wanted.rate).toFixed(1), pictures: picturesOf(wanted) }));
   };
   const row = (label: string, ...fields: HTMLElement[]) => element("label", { class: "film-row" }, element("span", {}, label), ...fields);
   const fields = [from, to, rate, fps, size, camera];
@@ -57,24 +58,24 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
   const form = element(
     "form",
     { class: "film-form", onsubmit: (event: Event) => (event.preventDefault(), void run(exportFilm)) },
-    row("From (s)", from),
-    row("To (s)", to),
-    row("Speed", rate),
-    row("Pictures", fps),
-    row("Size", size),
-    row("Camera", camera),
+    row(t("From (s)"), from),
+    row(t("To (s)"), to),
+    row(t("Speed"), rate),
+    row(t("Pictures"), fps),
+    row(t("Size"), size),
+    row(t("Camera"), camera),
     note,
     bar,
     dialogButtons(gltf, stop, start),
   );
-  const dialog = openDialog("Make a film of the run", "film-dialog", form);
+  const dialog = openDialog(t("Make a film of the run"), "film-dialog", form);
   dialog.addEventListener("close", () => running.abort());
   show(bar, false);
   describe();
 
   const tell = (what: string) => (done: number, of: number) => {
     bar.value = done / of;
-    setText(note, `${what} ${done} of ${of}`);
+    setText(note, t("{{what}} {{done}} of {{of}}", { what, done, of }));
   };
 
   /** Does it with the fields locked and the bar shown, then closes. */
@@ -97,18 +98,18 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
     const { filmHindrance, makeFilm } = await import("./film");
     const hindrance = await filmHindrance(wanted.width, wanted.height);
     if (hindrance) throw new Error(hindrance);
-    const film = await makeFilm(parts, wanted, tell("Picture"), running.signal);
+    const film = await makeFilm(parts, wanted, tell(t("Picture")), running.signal);
     if (!film) return;
     download(film, `${parts.document.title || "scene"}.webm`);
-    parts.notices.tell({ level: "info", text: `The film is among your downloads (${(film.size / 1e6).toFixed(1)} MB)` });
+    parts.notices.tell({ level: "info", text: t("The film is among your downloads ({{size}} MB)", { size: (film.size / 1e6).toFixed(1) }) });
   }
 
   async function exportAnimation(wanted: FilmPlan): Promise<void> {
     const { makeAnimation } = await import("./animation");
-    const made = await makeAnimation(parts, wanted, tell("Moment"), running.signal);
+    const made = await makeAnimation(parts, wanted, tell(t("Moment")), running.signal);
     if (!made) return;
     download(made.file, `${parts.document.title || "scene"}.glb`);
     const remedy = made.still.length > 0 ? `${made.still.join("; ")}.` : undefined;
-    parts.notices.tell({ level: "info", text: "The animation is among your downloads", ...(remedy && { remedy }) });
+    parts.notices.tell({ level: "info", text: t("The animation is among your downloads"), ...(remedy && { remedy }) });
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { TimeMark } from "../connection/messages";
 import { nameOf, type SceneDocument } from "../document/scene_document";
+import { t } from "../language";
 
 /** A time for people: "12.34 s", "1:02.50". */
 export function timeText(seconds: number): string {
@@ -13,18 +14,18 @@ export function timeText(seconds: number): string {
 export function markText(mark: TimeMark, scene: Pick<SceneDocument, "entity">): string {
   const name = (index?: number) => {
     const entity = index === undefined ? undefined : scene.entity(index);
-    return entity ? nameOf(entity) : "a hand";
+    return entity ? nameOf(entity) : t("a hand");
   };
   switch (mark.kind) {
     case "contact":
-      return `Contact of ${name(mark.a)} and ${name(mark.b)}, ${(mark.impulse ?? 0).toPrecision(2)} N s`;
+      return t("Contact of {{first}} and {{second}}, {{impulse}} N s", { first: name(mark.a), second: name(mark.b), impulse: (mark.impulse ?? 0).toPrecision(2) });
     case "action":
-      return `Action ${mark.name ? `“${mark.name}”` : ""}`.trim();
+      return mark.name ? t("Action “{{name}}”", { name: mark.name }) : t("Action");
     case "rope_broke":
-      return `${name(mark.a)} broke`;
+      return t("{{name}} broke", { name: name(mark.a) });
     case "hand":
-      return `A hand took ${name(mark.a)}`;
+      return t("A hand took {{name}}", { name: name(mark.a) });
     case "branch":
-      return "The run went on anew from here";
+      return t("The run went on anew from here");
   }
 }

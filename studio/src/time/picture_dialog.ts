@@ -6,6 +6,7 @@ import { Capture, LONGEST_SIDE, MOST_PIXELS } from "../view/capture";
 import type { View } from "../view/view";
 import { download } from "./download";
 import { PICTURE_SIZES } from "./sizes";
+import { t } from "../language";
 
 /** The scene as the camera sees it, as a PNG file of any size; `isTransparent`: without what is behind it. */
 export async function drawPicture(view: View, width: number, height: number, isTransparent: boolean): Promise<Blob> {
@@ -23,24 +24,24 @@ export async function drawPicture(view: View, width: number, height: number, isT
 
 /** Why there is no picture of this size; null where there is. */
 function sizeFault(width: number, height: number): string | null {
-  if (!Number.isInteger(width) || !Number.isInteger(height) || width < 16 || height < 16) return "Give whole numbers of pixels, at least 16.";
-  if (Math.max(width, height) > LONGEST_SIDE) return `A side has at most ${LONGEST_SIDE} pixels.`;
-  return width * height > MOST_PIXELS ? `A picture has at most ${MOST_PIXELS / 1e6} million pixels.` : null;
+  if (!Number.isInteger(width) || !Number.isInteger(height) || width < 16 || height < 16) return t("Give whole numbers of pixels, at least 16.");
+  if (Math.max(width, height) > LONGEST_SIDE) return t("A side has at most {{side}} pixels.", { side: LONGEST_SIDE });
+  return width * height > MOST_PIXELS ? t("A picture has at most {{number}} million pixels.", { number: MOST_PIXELS / 1e6 }) : null;
 }
 
 /** Asks for the size of a picture, and saves it. */
 export function openPicture(parts: Pick<Parts, "notices" | "document" | "view">): void {
   const { canvas } = parts.view;
   const field = (label: string, testId: string, value: number) => element("input", { type: "number", min: 16, max: LONGEST_SIDE, value, "aria-label": label, "data-testid": testId });
-  const width = field("Width, pixels", "picture-width", 3840);
-  const height = field("Height, pixels", "picture-height", 2160);
+  const width = field(t("Width, pixels"), "picture-width", 3840);
+  const height = field(t("Height, pixels"), "picture-height", 2160);
   const clear = element("input", { type: "checkbox", "data-testid": "picture-transparent" });
   const note = element("p", { class: "note", role: "status", "data-testid": "picture-note" });
-  const save = element("button", { class: "primary", type: "submit", "data-testid": "picture-save" }, "Save");
+  const save = element("button", { class: "primary", type: "submit", "data-testid": "picture-save" }, t("Save"));
   const describe = (): void => {
     const fault = sizeFault(Number(width.value), Number(height.value));
     save.disabled = fault !== null;
-    setText(note, fault ?? "As the camera sees it, without handles and outlines.");
+    setText(note, fault ?? t("As the camera sees it, without handles and outlines."));
   };
   const put = (size: readonly [number, number]): void => {
     width.value = String(size[0]);
@@ -48,19 +49,19 @@ export function openPicture(parts: Pick<Parts, "notices" | "document" | "view">)
     describe();
   };
   const shown: [number, number] = [Math.round(canvas.clientWidth * devicePixelRatio), Math.round(canvas.clientHeight * devicePixelRatio)];
-  const sizes = [["as shown", shown] as const, ...PICTURE_SIZES.slice(2).map((size) => [size.join(" × "), size] as const)];
+  const sizes = [[t("as shown"), shown] as const, ...PICTURE_SIZES.slice(2).map((size) => [size.join(" × "), size] as const)];
   for (const each of [width, height]) each.addEventListener("input", describe);
   const form = element(
     "form",
     { class: "film-form", onsubmit: (event: Event) => void run(event) },
     element("div", { class: "size-buttons" }, ...sizes.map(([label, size]) => element("button", { type: "button", onclick: () => put(size) }, label))),
-    element("label", { class: "film-row" }, element("span", {}, "Width (pixels)"), width),
-    element("label", { class: "film-row" }, element("span", {}, "Height (pixels)"), height),
-    element("label", { class: "option" }, clear, element("span", {}, "Transparent behind the scene")),
+    element("label", { class: "film-row" }, element("span", {}, t("Width (pixels)")), width),
+    element("label", { class: "film-row" }, element("span", {}, t("Height (pixels)")), height),
+    element("label", { class: "option" }, clear, element("span", {}, t("Transparent behind the scene"))),
     note,
-    dialogButtons(element("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), save),
+    dialogButtons(element("button", { type: "button", onclick: () => dialog.close() }, t("Cancel")), save),
   );
-  const dialog = openDialog("Save a picture", "picture-dialog", form);
+  const dialog = openDialog(t("Save a picture"), "picture-dialog", form);
   describe();
 
   async function run(event: Event): Promise<void> {
@@ -70,7 +71,7 @@ export function openPicture(parts: Pick<Parts, "notices" | "document" | "view">)
     try {
       download(await drawPicture(parts.view, Number(width.value), Number(height.value), clear.checked), `${parts.document.title || "scene"}.png`);
     } catch (error) {
-      parts.notices.tell({ level: "error", text: `The picture could not be drawn: ${(error as Error).message}`, remedy: "Choose a smaller size." });
+      parts.notices.tell({ level: "error", text: t("The picture could not be drawn: {{message}}", { message: (error as Error).message }), remedy: t("Choose a smaller size.") });
     }
     dialog.close();
   }

@@ -7,15 +7,16 @@ import { element, setText, show } from "../panels/element";
 import type { Parts } from "../parts";
 import { Signal } from "../signal";
 import { download } from "./download";
+import { t } from "../language";
 
 const QUANTITIES: readonly [Quantity, string][] = [
-  ["height", "Height"],
-  ["speed", "Speed"],
-  ["spin", "Spin"],
-  ["kinetic_energy", "Kinetic energy"],
-  ["momentum", "Momentum"],
-  ["x", "Place along X"],
-  ["z", "Place along Z"],
+  ["height", t("Height")],
+  ["speed", t("Speed")],
+  ["spin", t("Spin")],
+  ["kinetic_energy", t("Kinetic energy")],
+  ["momentum", t("Momentum")],
+  ["x", t("Place along X")],
+  ["z", t("Place along Z")],
 ];
 /** Lines that can be told apart, in both themes; and samples of each. */
 const COLORS = ["#ff9d2e", "#4ea3ff", "#3fae52", "#e5493d", "#b07cff", "#18b3ac", "#d6629c", "#9a8c4a"];
@@ -29,9 +30,9 @@ export class Plots {
   readonly root: HTMLElement;
   /** The user wants to see this time, s. */
   readonly wanted = new Signal<number>();
-  private readonly quantity = element("select", { "aria-label": "What is plotted", "data-testid": "plot-quantity" }, ...QUANTITIES.map(([name, label]) => element("option", { value: name }, label)));
+  private readonly quantity = element("select", { "aria-label": t("What is plotted"), "data-testid": "plot-quantity" }, ...QUANTITIES.map(([name, label]) => element("option", { value: name }, label)));
   private readonly hint = element("p", { class: "note", "data-testid": "plot-hint" });
-  private readonly save = element("button", { class: "time-button", "data-testid": "plot-csv", title: "Save the numbers as a table", onclick: () => this.export() }, "Save as CSV");
+  private readonly save = element("button", { class: "time-button", "data-testid": "plot-csv", title: t("Save the numbers as a table"), onclick: () => this.export() }, t("Save as CSV"));
   private readonly field = element("div", { class: "plot-field", "data-testid": "plot-field" });
   private plot: uPlot | null = null;
   private shape = "";
@@ -76,7 +77,7 @@ export class Plots {
     if (this.root.hidden || !server.isOpen) return;
     const indices = selection.indices.slice(0, COLORS.length);
     const more = selection.indices.length - indices.length;
-    setText(this.hint, indices.length === 0 ? "Select up to eight things to plot them over the run." : more > 0 ? `The first ${COLORS.length} of ${selection.indices.length} selected things.` : "");
+    setText(this.hint, indices.length === 0 ? t("Select up to eight things to plot them over the run.") : more > 0 ? t("The first {{shown}} of {{count}} selected things.", { shown: COLORS.length, count: selection.indices.length }) : "");
     const quantity = this.quantity.value as Quantity;
     const told = indices.length > 0 ? await server.command("time.curves", { curves: indices.map((index) => ({ index, quantity })), samples: SAMPLES }) : { times: [], curves: [] };
     if (!told) return;
@@ -107,9 +108,9 @@ export class Plots {
         width: this.field.clientWidth,
         height: HEIGHT_PX,
         scales: { x: { time: false } },
-        axes: [axis("Time (s)"), axis(`${label} (${unit})`)],
+        axes: [axis(t("Time (s)")), axis(`${label} (${unit})`)],
         series: [
-          { label: "Time", value: (_, value) => (value === null ? "–" : `${value.toFixed(3)} s`) },
+          { label: t("Time"), value: (_, value) => (value === null ? "–" : `${value.toFixed(3)} s`) },
           ...this.curves.map(({ index }, at) => ({
             label: this.nameOf(index),
             stroke: COLORS[at]!,
@@ -142,13 +143,13 @@ export class Plots {
 
   private nameOf(index: number): string {
     const entity = this.parts.document.entity(index);
-    return entity ? nameOf(entity) : `Entity ${index}`;
+    return entity ? nameOf(entity) : t("Entity {{index}}", { index });
   }
 
   /** A table of the curves: a column for the time, and one for each thing. */
   private export(): void {
     const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`;
-    const heads = ["Time (s)", ...this.curves.map(({ index, quantity, unit }) => `${this.nameOf(index)} ${quantity.replace("_", " ")} (${unit})`)];
+    const heads = [t("Time (s)"), ...this.curves.map(({ index, quantity, unit }) => `${this.nameOf(index)} ${quantity.replace("_", " ")} (${unit})`)];
     const rows = this.times.map((time, at) => [time, ...this.curves.map(({ values }) => values[at] ?? "")].join(","));
     const name = `${this.parts.document.title || "scene"} ${this.quantity.value}.csv`;
     download(new Blob([[heads.map(quoted).join(","), ...rows, ""].join("\r\n")], { type: "text/csv" }), name);

@@ -6,6 +6,7 @@ import { icon } from "../tools/icons";
 import { timeText } from "./mark_text";
 import { Plots } from "./plots";
 import { Track } from "./track";
+import { t } from "../language";
 
 /** Marks are asked for at most this often, ms. */
 const MARKS_MS = 400;
@@ -24,8 +25,8 @@ export class Timeline {
   readonly track: Track;
   readonly plots: Plots;
   private readonly time = element("span", { class: "time-now", "data-testid": "time-now" });
-  private readonly badge = element("span", { class: "time-badge", role: "status", "data-testid": "time-badge" }, "Looking back, for everybody");
-  private readonly rate = element("select", { "aria-label": "Speed", title: "Speed: simulated seconds in one of yours", "data-testid": "time-rate" });
+  private readonly badge = element("span", { class: "time-badge", role: "status", "data-testid": "time-badge" }, t("Looking back, for everybody"));
+  private readonly rate = element("select", { "aria-label": t("Speed"), title: t("Speed: simulated seconds in one of yours"), "data-testid": "time-rate" });
   private readonly play = element("button", { class: "tool-button", "data-testid": "time-play" });
   private readonly body: HTMLElement;
   private readonly fold = element("button", { class: "tool-button", "data-testid": "time-fold" });
@@ -50,15 +51,15 @@ export class Timeline {
     this.body = element("div", { class: "track-frame" }, this.track.root);
     this.root = element(
       "section",
-      { class: "timeline", "aria-label": "Time", "data-testid": "timeline" },
+      { class: "timeline", "aria-label": t("Time"), "data-testid": "timeline" },
       element(
         "div",
         { class: "time-row" },
-        button("time-first", "To the beginning (Home on the line)", "reset", () => void this.seek(parts.take.state.start)),
-        button("time-back", "One step back (left arrow on the line)", "stepBack", () => void this.seek(this.track.now - this.step)),
+        button("time-first", t("To the beginning (Home on the line)"), "reset", () => void this.seek(parts.take.state.start)),
+        button("time-back", t("One step back (left arrow on the line)"), "stepBack", () => void this.seek(this.track.now - this.step)),
         this.play,
-        button("time-forth", "One step on (right arrow on the line)", "stepOn", () => void this.stepOn()),
-        button("time-last", "To the end: what is now (End on the line)", "toEnd", () => void this.seek(this.track.end)),
+        button("time-forth", t("One step on (right arrow on the line)"), "stepOn", () => void this.stepOn()),
+        button("time-last", t("To the end: what is now (End on the line)"), "toEnd", () => void this.seek(this.track.end)),
         this.time,
         this.rate,
         element("span", { class: "spacer" }),
@@ -138,7 +139,7 @@ export class Timeline {
   }
 
   private showTime(): void {
-    setText(this.time, `${timeText(this.track.now)} of ${timeText(this.track.end)}`);
+    setText(this.time, t("{{now}} of {{end}}", { now: timeText(this.track.now), end: timeText(this.track.end) }));
   }
 
   private update(): void {
@@ -147,12 +148,12 @@ export class Timeline {
     const isFolded = preferences.get("timelineFolded");
     show(this.body, !isFolded);
     this.fold.replaceChildren(icon(isFolded ? "up" : "down"));
-    this.fold.title = isFolded ? "Unfold the line of time" : "Fold the line of time";
+    this.fold.title = isFolded ? t("Unfold the line of time") : t("Fold the line of time");
     this.fold.setAttribute("aria-label", this.fold.title);
     this.fold.setAttribute("aria-expanded", String(!isFolded));
     show(this.badge, take.state.shown !== null);
     this.play.replaceChildren(icon(playback.playing ? "pause" : "play"));
-    const label = playback.playing ? "Pause" : take.state.shown === null ? "Play" : "Play from here";
+    const label = playback.playing ? t("Pause") : take.state.shown === null ? t("Play") : t("Play from here");
     this.play.title = `${label} (Space)`;
     this.play.setAttribute("aria-label", label);
     const rate = playback.simulation.rate ?? 1;

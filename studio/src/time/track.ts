@@ -4,6 +4,7 @@ import { element, setText, show } from "../panels/element";
 import { Signal } from "../signal";
 import { markText, timeText } from "./mark_text";
 import type { Parts } from "../parts";
+import { t } from "../language";
 
 /** The shortest part of a take that can be zoomed to, s; and what is shown of a shorter take. */
 const SHORTEST_S = 0.1;
@@ -32,7 +33,7 @@ export class Track {
   private isDragging = false;
 
   constructor(private readonly parts: Pick<Parts, "document" | "playback" | "take" | "preferences">) {
-    this.root = element("div", { class: "track", role: "slider", tabindex: 0, "aria-label": "Time", "data-testid": "time-track" }, this.canvas, this.tip);
+    this.root = element("div", { class: "track", role: "slider", tabindex: 0, "aria-label": t("Time"), "data-testid": "time-track" }, this.canvas, this.tip);
     show(this.tip, false);
     new ResizeObserver(() => this.refresh()).observe(this.root);
     this.root.addEventListener("pointerdown", (event) => this.press(event));
@@ -115,7 +116,7 @@ export class Track {
     const near = this.parts.take.marks.filter(({ time }) => Math.abs(this.x(time, width) - at) <= REACH_PX);
     const strongest = [...near].sort((a, b) => (b.impulse ?? Infinity) - (a.impulse ?? Infinity)).slice(0, MOST_TOLD);
     const lines = strongest.map((mark) => `${timeText(mark.time)}: ${markText(mark, this.parts.document)}`);
-    if (near.length > strongest.length) lines.push(`and ${near.length - strongest.length} more`);
+    if (near.length > strongest.length) lines.push(t("and {{number}} more", { number: near.length - strongest.length }));
     setText(this.tip, lines.length > 0 ? lines.join("\n") : timeText(this.timeAt(clientX)));
     show(this.tip, true);
     const half = this.tip.offsetWidth / 2;
@@ -174,7 +175,7 @@ export class Track {
     this.root.setAttribute("aria-valuemin", start.toFixed(3));
     this.root.setAttribute("aria-valuemax", end.toFixed(3));
     this.root.setAttribute("aria-valuenow", now.toFixed(3));
-    this.root.setAttribute("aria-valuetext", `${timeText(now)} of ${timeText(end)}${shown === null ? "" : ", looking back"}`);
+    this.root.setAttribute("aria-valuetext", shown === null ? t("{{now}} of {{end}}", { now: timeText(now), end: timeText(end) }) : t("{{now}} of {{end}}, looking back", { now: timeText(now), end: timeText(end) }));
 
     const ratio = devicePixelRatio;
     this.canvas.width = Math.round(width * ratio);

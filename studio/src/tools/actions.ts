@@ -8,6 +8,7 @@ import type { Gizmo } from "./gizmo";
 import { allLocked, toggleLock, unlocked, withoutLocked } from "./locks";
 import type { Pointer } from "./pointer";
 import { PRIMITIVES } from "./primitives";
+import { t } from "../language";
 
 /** A command for the user: by button, key or command palette. */
 export interface UserAction {
@@ -57,8 +58,8 @@ export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notic
     ...viewActions(parts, open),
     ...PRIMITIVES.map((primitive) => ({
       id: `add.${primitive.name}`,
-      label: `Add ${primitive.label.toLowerCase()}`,
-      group: "Add",
+      label: t("Add {{label}}", { label: primitive.label.toLocaleLowerCase() }),
+      group: t("Add"),
       keys: [],
       needs: "edit" as const,
       run: () => void addInFront(parts, primitive.entity()),
@@ -76,16 +77,16 @@ function withRights({ people }: Pick<Parts, "people">, actions: UserAction[]): U
 
 function sceneActions(parts: Pick<Parts, "server">, open: Openers): UserAction[] {
   return [
-    { id: "scene.new", needs: "edit", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
-    { id: "scene.open", needs: "edit", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
-    { id: "scene.save", needs: "edit", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: open.save },
-    { id: "scene.save_as", needs: "edit", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
-    { id: "scene.save_version", needs: "edit", label: "Save a version…", group: "Scene", keys: [], run: open.saveVersion },
-    { id: "scene.versions", label: "Versions of this scene…", group: "Scene", keys: [], run: open.versions },
+    { id: "scene.new", needs: "edit", label: t("New scene"), group: t("Scene"), keys: [], icon: "fresh", run: open.newScene },
+    { id: "scene.open", needs: "edit", label: t("Open scene…"), group: t("Scene"), keys: ["Ctrl+O"], icon: "open", run: open.scenes },
+    { id: "scene.save", needs: "edit", label: t("Save"), group: t("Scene"), keys: ["Ctrl+S"], icon: "save", run: open.save },
+    { id: "scene.save_as", needs: "edit", label: t("Save as…"), group: t("Scene"), keys: ["Ctrl+Shift+S"], run: open.saveAs },
+    { id: "scene.save_version", needs: "edit", label: t("Save a version…"), group: t("Scene"), keys: [], run: open.saveVersion },
+    { id: "scene.versions", label: t("Versions of this scene…"), group: t("Scene"), keys: [], run: open.versions },
     {
       id: "scene.download",
-      label: "Download scene file",
-      group: "Scene",
+      label: t("Download scene file"),
+      group: t("Scene"),
       keys: [],
       run: () => location.assign(parts.server.address("scene.json")),
     },
@@ -100,15 +101,15 @@ function editActions(parts: Pick<Parts, "server" | "notices" | "document" | "sel
     if (indices.length > 0) void parts.server.command(command, { indices });
   };
   return [
-    { id: "edit.undo", needs: "edit", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
-    { id: "edit.redo", needs: "edit", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
-    { id: "edit.delete", needs: "edit", label: "Delete", group: "Edit", keys: ["Delete", "Backspace"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
-    { id: "edit.duplicate", needs: "edit", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
-    { id: "edit.select_all", label: "Select all that is not locked", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(unlocked(parts, document.entities.keys())) },
-    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
-    { id: "edit.lock", needs: "edit", label: "Lock or unlock", group: "Edit", keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
-    { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
-    { id: "edit.drop", needs: "edit", label: "Drop to floor", group: "Edit", keys: ["End"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
+    { id: "edit.undo", needs: "edit", label: t("Undo"), group: t("Edit"), keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
+    { id: "edit.redo", needs: "edit", label: t("Redo"), group: t("Edit"), keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
+    { id: "edit.delete", needs: "edit", label: t("Delete"), group: t("Edit"), keys: ["Delete", "Backspace"], icon: "bin", possible: some, run: () => forUnlocked("entity.remove") },
+    { id: "edit.duplicate", needs: "edit", label: t("Duplicate"), group: t("Edit"), keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
+    { id: "edit.select_all", label: t("Select all that is not locked"), group: t("Edit"), keys: ["Ctrl+A"], run: () => selection.set(unlocked(parts, document.entities.keys())) },
+    { id: "edit.select_none", label: t("Select nothing"), group: t("Edit"), keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
+    { id: "edit.lock", needs: "edit", label: t("Lock or unlock"), group: t("Edit"), keys: ["L"], icon: "lock", possible: some, on: () => allLocked(parts, selection.indices), run: () => toggleLock(parts, selection.indices) },
+    { id: "catalog.history", label: t("History of catalogue changes…"), group: t("Models"), keys: [], icon: "history", run: open.history },
+    { id: "edit.drop", needs: "edit", label: t("Drop to floor"), group: t("Edit"), keys: ["End"], possible: some, run: () => forUnlocked("entity.drop_to_floor") },
   ];
 }
 
@@ -124,21 +125,21 @@ function toolActions(parts: Pick<Parts, "preferences">, gizmo: Gizmo): UserActio
   const tool = (name: Gizmo["tool"], label: string, key: string): UserAction => ({
     id: `tool.${name}`,
     label,
-    group: "Tools",
+    group: t("Tools"),
     keys: [key],
     icon: name,
     on: () => gizmo.tool === name,
     run: () => gizmo.use(name),
   });
   return [
-    tool("select", "Select", "Q"),
-    tool("move", "Move", "W"),
-    tool("rotate", "Rotate", "E"),
-    tool("scale", "Scale", "R"),
+    tool("select", t("Select"), "Q"),
+    tool("move", t("Move"), "W"),
+    tool("rotate", t("Rotate"), "E"),
+    tool("scale", t("Scale"), "R"),
     {
       id: "tool.space",
-      label: "Handles along the entity's own axes",
-      group: "Tools",
+      label: t("Handles along the entity's own axes"),
+      group: t("Tools"),
       keys: ["X"],
       icon: "local",
       on: () => gizmo.space === "local",
@@ -146,8 +147,8 @@ function toolActions(parts: Pick<Parts, "preferences">, gizmo: Gizmo): UserActio
     },
     {
       id: "tool.snap",
-      label: "Snap to steps (hold Shift for the opposite)",
-      group: "Tools",
+      label: t("Snap to steps (hold Shift for the opposite)"),
+      group: t("Tools"),
       keys: [],
       icon: "snap",
       on: () => preferences.get("snap"),
@@ -162,16 +163,16 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
     {
       id: "simulation.play",
       needs: "run",
-      label: "Play or pause",
-      group: "Simulation",
+      label: t("Play or pause"),
+      group: t("Simulation"),
       keys: ["Space"],
       icon: "play",
       on: () => parts.playback.playing,
       run: () => void parts.server.command(parts.playback.playing ? "simulation.pause" : "simulation.play", {}),
     },
-    { id: "simulation.step", needs: "run", label: "One step", group: "Simulation", keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
-    { id: "simulation.reset", needs: "run", label: "Back to the start", group: "Simulation", keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
-    { id: "simulation.keep", needs: "edit", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
+    { id: "simulation.step", needs: "run", label: t("One step"), group: t("Simulation"), keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
+    { id: "simulation.reset", needs: "run", label: t("Back to the start"), group: t("Simulation"), keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
+    { id: "simulation.keep", needs: "edit", label: t("Settle: keep these poses as the scene"), group: t("Simulation"), keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
   ];
 }
 
@@ -181,8 +182,8 @@ export async function keepPoses(parts: Pick<Parts, "server" | "notices" | "docum
   const changeForm = [...document.entities.keys()].some((index) => entities.softs.has(index) || entities.clouds.of(index));
   parts.notices.tell({
     level: "info",
-    text: "The present poses are now the scene's; undo takes them back",
-    ...(changeForm && { remedy: "Of soft things, cloth and ropes the place is kept, not dents and folds; grains and liquids start as before." }),
+    text: t("The present poses are now the scene's; undo takes them back"),
+    ...(changeForm && { remedy: t("Of soft things, cloth and ropes the place is kept, not dents and folds; grains and liquids start as before.") }),
   });
 }
 
@@ -190,31 +191,31 @@ function viewActions(parts: Pick<Parts, "preferences" | "document" | "selection"
   const { preferences, view } = parts;
   const flip = <Name extends "tint" | "fullTint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
   return [
-    { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(parts) },
-    { id: "view.tint", label: "Show what is active and what sleeps", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
-    { id: "view.fullTint", label: "In full colour: red, green and gray all over", group: "View", keys: [], on: () => preferences.get("fullTint"), run: () => flip("fullTint") },
-    { id: "view.grid", label: "Grid", group: "View", keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
-    { id: "view.collision", label: "Collision shapes of the selection", group: "View", keys: ["C"], on: () => preferences.get("collision"), run: () => flip("collision") },
+    { id: "view.focus", label: t("Focus on the selection"), group: t("View"), keys: ["F"], run: () => focus(parts) },
+    { id: "view.tint", label: t("Show what is active and what sleeps"), group: t("View"), keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
+    { id: "view.fullTint", label: t("In full colour: red, green and gray all over"), group: t("View"), keys: [], on: () => preferences.get("fullTint"), run: () => flip("fullTint") },
+    { id: "view.grid", label: t("Grid"), group: t("View"), keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
+    { id: "view.collision", label: t("Collision shapes of the selection"), group: t("View"), keys: ["C"], on: () => preferences.get("collision"), run: () => flip("collision") },
     {
       id: "view.theme",
-      label: "Light theme",
-      group: "View",
+      label: t("Light theme"),
+      group: t("View"),
       keys: [],
       on: () => preferences.get("theme") === "light",
       run: () => preferences.set("theme", preferences.get("theme") === "light" ? "dark" : "light"),
     },
     {
       id: "view.quality",
-      label: "Fast drawing (no shadows or reflections)",
-      group: "View",
+      label: t("Fast drawing (no shadows or reflections)"),
+      group: t("View"),
       keys: [],
       on: () => preferences.get("quality") === "low",
       run: () => preferences.set("quality", preferences.get("quality") === "low" ? "high" : "low"),
     },
-    { id: "view.screenshot", label: "Save a picture", group: "View", keys: [], icon: "camera", run: () => view.savePicture(parts.document.title) },
-    { id: "view.search", label: "Search models", group: "View", keys: ["/", "Ctrl+F"], run: open.search },
-    { id: "view.palette", label: "All commands…", group: "View", keys: ["Ctrl+K"], icon: "palette", run: open.palette },
-    { id: "view.help", label: "Help and keys", group: "View", keys: ["?", "F1"], icon: "help", run: open.help },
+    { id: "view.screenshot", label: t("Save a picture"), group: t("View"), keys: [], icon: "camera", run: () => view.savePicture(parts.document.title) },
+    { id: "view.search", label: t("Search models"), group: t("View"), keys: ["/", "Ctrl+F"], run: open.search },
+    { id: "view.palette", label: t("All commands…"), group: t("View"), keys: ["Ctrl+K"], icon: "palette", run: open.palette },
+    { id: "view.help", label: t("Help and keys"), group: t("View"), keys: ["?", "F1"], icon: "help", run: open.help },
   ];
 }
 

@@ -7,6 +7,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "./actions";
 import type { IconName } from "./icons";
 import { withoutLocked } from "./locks";
+import { t } from "../language";
 
 /** One press of an arrow key, m, where no steps are set. */
 const NUDGE = 0.01;
@@ -45,8 +46,8 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
   const nudge = (key: string, label: string, right: number, up: number, away: number): UserAction[] =>
     [1, 10].map((times) => ({
       id: `arrange.nudge.${key}.${times}`,
-      label: times === 1 ? `Nudge ${label}` : `Nudge ${label}, ten times as far`,
-      group: "Arrange",
+      label: times === 1 ? t("Nudge {{direction}}", { direction: label }) : t("Nudge {{direction}}, ten times as far", { direction: label }),
+      group: t("Arrange"),
       keys: [times === 1 ? key : `Shift+${key}`],
       possible: some,
       repeats: true,
@@ -55,46 +56,46 @@ export function arrangeActions(parts: ArrangeParts): UserAction[] {
   const align = (axis: Axis, at: "low" | "center" | "high", label: string, icon?: IconName): UserAction => ({
     ...(icon && { icon }),
     id: `arrange.align.${axis}.${at}`,
-    label: `Align ${label}`,
-    group: "Arrange",
+    label: t("Align {{place}}", { place: label }),
+    group: t("Arrange"),
     keys: [],
     possible: atLeast(2),
     run: () => arrange(2, (free) => void parts.server.command("entity.align", { indices: free, axis, at })),
   });
   const along = (verb: string, id: string, least: number, run: (axis: Axis) => void, icons: Partial<Record<Axis, IconName>>): UserAction[] =>
-    (["x", "y", "z"] as const).map((axis) => ({ ...(icons[axis] && { icon: icons[axis] }), id: `arrange.${id}.${axis}`, label: `${verb} ${axis.toUpperCase()}`, group: "Arrange", keys: [], possible: atLeast(least), run: () => run(axis) }));
+    (["x", "y", "z"] as const).map((axis) => ({ ...(icons[axis] && { icon: icons[axis] }), id: `arrange.${id}.${axis}`, label: t("{{what}} {{axis}}", { what: verb, axis: axis.toUpperCase() }), group: t("Arrange"), keys: [], possible: atLeast(least), run: () => run(axis) }));
   const actions: UserAction[] = [
-    ...nudge("ArrowLeft", "to the left", -1, 0, 0),
-    ...nudge("ArrowRight", "to the right", 1, 0, 0),
-    ...nudge("ArrowUp", "away", 0, 0, 1),
-    ...nudge("ArrowDown", "nearer", 0, 0, -1),
-    ...nudge("PageUp", "up", 0, 1, 0),
-    ...nudge("PageDown", "down", 0, -1, 0),
-    { id: "arrange.turn.left", label: "Turn by 15° to the left", group: "Arrange", keys: ["["], possible: some, repeats: true, run: () => turn(parts, TURN) },
-    { id: "arrange.turn.right", label: "Turn by 15° to the right", group: "Arrange", keys: ["]"], possible: some, repeats: true, run: () => turn(parts, -TURN) },
-    align("x", "low", "at the lowest X", "alignLeft"),
-    align("x", "center", "the middles along X", "alignMiddle"),
-    align("x", "high", "at the highest X", "alignRight"),
-    align("y", "low", "the bases", "alignBase"),
-    align("y", "center", "the middles in height"),
-    align("y", "high", "the tops", "alignTop"),
-    align("z", "low", "at the lowest Z", "alignFar"),
-    align("z", "center", "the middles along Z", "alignBetween"),
-    align("z", "high", "at the highest Z", "alignNear"),
-    ...along("Equal gaps along", "distribute", 3, (axis) => arrange(3, (free) => void parts.server.command("entity.distribute", { indices: free, axis })), { x: "gapsAcross", z: "gapsAlong" }),
-    ...along("Mirror along", "mirror", 1, (axis) => arrange(1, (free) => void parts.server.command("entity.mirror", { indices: free, axis })), { x: "mirrorAcross", z: "mirrorAlong" }),
+    ...nudge("ArrowLeft", t("to the left"), -1, 0, 0),
+    ...nudge("ArrowRight", t("to the right"), 1, 0, 0),
+    ...nudge("ArrowUp", t("away"), 0, 0, 1),
+    ...nudge("ArrowDown", t("nearer"), 0, 0, -1),
+    ...nudge("PageUp", t("up"), 0, 1, 0),
+    ...nudge("PageDown", t("down"), 0, -1, 0),
+    { id: "arrange.turn.left", label: t("Turn by 15° to the left"), group: t("Arrange"), keys: ["["], possible: some, repeats: true, run: () => turn(parts, TURN) },
+    { id: "arrange.turn.right", label: t("Turn by 15° to the right"), group: t("Arrange"), keys: ["]"], possible: some, repeats: true, run: () => turn(parts, -TURN) },
+    align("x", "low", t("at the lowest X"), "alignLeft"),
+    align("x", "center", t("the middles along X"), "alignMiddle"),
+    align("x", "high", t("at the highest X"), "alignRight"),
+    align("y", "low", t("the bases"), "alignBase"),
+    align("y", "center", t("the middles in height")),
+    align("y", "high", t("the tops"), "alignTop"),
+    align("z", "low", t("at the lowest Z"), "alignFar"),
+    align("z", "center", t("the middles along Z"), "alignBetween"),
+    align("z", "high", t("at the highest Z"), "alignNear"),
+    ...along(t("Equal gaps along"), "distribute", 3, (axis) => arrange(3, (free) => void parts.server.command("entity.distribute", { indices: free, axis })), { x: "gapsAcross", z: "gapsAlong" }),
+    ...along(t("Mirror along"), "mirror", 1, (axis) => arrange(1, (free) => void parts.server.command("entity.mirror", { indices: free, axis })), { x: "mirrorAcross", z: "mirrorAlong" }),
     ...(["x", "y", "z"] as const).map(
       (axis, at): UserAction => ({
         id: `arrange.array.${axis}`,
-        label: `Row of five along ${axis.toUpperCase()}`,
-        group: "Arrange",
+        label: t("Row of five along {{axis}}", { axis: axis.toUpperCase() }),
+        group: t("Arrange"),
         keys: [],
         possible: some,
         run: () => void row(parts, at),
       }),
     ),
-    { id: "arrange.group", label: "Group", group: "Arrange", icon: "group", keys: ["Ctrl+G"], possible: atLeast(2), run: () => void parts.server.command("entity.group", { indices: indices() }) },
-    { id: "arrange.ungroup", label: "Ungroup", group: "Arrange", icon: "ungroup", keys: ["Ctrl+Shift+G"], possible: () => groupsOf(parts).length > 0, run: () => void ungroup(parts) },
+    { id: "arrange.group", label: t("Group"), group: t("Arrange"), icon: "group", keys: ["Ctrl+G"], possible: atLeast(2), run: () => void parts.server.command("entity.group", { indices: indices() }) },
+    { id: "arrange.ungroup", label: t("Ungroup"), group: t("Arrange"), icon: "ungroup", keys: ["Ctrl+Shift+G"], possible: () => groupsOf(parts).length > 0, run: () => void ungroup(parts) },
   ];
   return actions.map((action) => ({ ...action, needs: "edit" }));
 }

@@ -5,6 +5,7 @@ import { inWall, movedOpening, type Wall, wallOf, wallsOf } from "../document/wa
 import type { Parts } from "../parts";
 import { Signal } from "../signal";
 import { formatLength } from "./lengths";
+import { t } from "../language";
 
 export type BuildMode = "wall" | "room" | "door" | "window" | "hole";
 
@@ -64,7 +65,7 @@ export class BuildTool {
 
   choose(mode: BuildMode | null): void {
     if (mode !== null && this.parts.playback.playing) {
-      this.parts.notices.tell({ level: "info", text: "Stop the simulation to build." });
+      this.parts.notices.tell({ level: "info", text: t("Stop the simulation to build.") });
       mode = null;
     }
     this.end();
@@ -206,7 +207,7 @@ export class BuildTool {
     const points = corners.map(({ x, z }) => [x - first.x, z - first.z] as [number, number]);
     await this.parts.server.command("entity.add", {
       entity: {
-        name: "Room floor",
+        name: t("Room floor"),
         category: "floor",
         shape: { type: "slab", thickness: FLOOR_THICKNESS, points },
         attributes: { kind: "static" },
@@ -232,7 +233,7 @@ export class BuildTool {
     const hit = view.pick(event.clientX, event.clientY);
     const entity = hit && document.entity(hit.index);
     const wall = entity && wallOf(entity);
-    if (!hit || !wall) return notices.tell({ level: "info", text: "Click on a wall." });
+    if (!hit || !wall) return notices.tell({ level: "info", text: t("Click on a wall.") });
     const at = inWall(wall, hit.point);
     const isLow = opening.kind !== "window";
     const made = movedOpening(wall.shape, { ...opening, offset: 0 }, at.x - opening.width / 2, isLow ? 0 : opening.sill);

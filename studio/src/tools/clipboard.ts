@@ -3,6 +3,7 @@ import type { Parts } from "../parts";
 import type { UserAction } from "./actions";
 import type { Pointer } from "./pointer";
 import { dropAt } from "./surface_drag";
+import { t } from "../language";
 
 type ClipboardParts = Pick<Parts, "server" | "notices" | "selection" | "view">;
 
@@ -21,9 +22,9 @@ export function clipboardActions(parts: ClipboardParts, pointer: Pick<Pointer, "
     void paste(parts, pointer, text || lastCopied);
   });
   return [
-    { id: "edit.copy", label: "Copy", group: "Edit", keys: ["Ctrl+C"], possible: some, run: () => void copy(parts) },
-    { id: "edit.cut", needs: "edit", label: "Cut", group: "Edit", keys: ["Ctrl+X"], possible: some, run: () => void cut(parts) },
-    { id: "edit.paste", needs: "edit", label: "Paste", group: "Edit", keys: ["Ctrl+V"], native: true, run: () => void pasteByHand(parts, pointer) },
+    { id: "edit.copy", label: t("Copy"), group: t("Edit"), keys: ["Ctrl+C"], possible: some, run: () => void copy(parts) },
+    { id: "edit.cut", needs: "edit", label: t("Cut"), group: t("Edit"), keys: ["Ctrl+X"], possible: some, run: () => void cut(parts) },
+    { id: "edit.paste", needs: "edit", label: t("Paste"), group: t("Edit"), keys: ["Ctrl+V"], native: true, run: () => void pasteByHand(parts, pointer) },
   ];
 }
 
@@ -32,7 +33,7 @@ async function copy(parts: ClipboardParts): Promise<boolean> {
   if (!copied) return false;
   lastCopied = JSON.stringify(copied.part, null, 1);
   await navigator.clipboard?.writeText(lastCopied).catch(() =>
-    parts.notices.tell({ level: "info", text: "Copied for this page only", remedy: "The browser did not let the page use the system's clipboard." }),
+    parts.notices.tell({ level: "info", text: t("Copied for this page only"), remedy: t("The browser did not let the page use the system's clipboard.") }),
   );
   return true;
 }
@@ -53,7 +54,7 @@ async function paste(parts: ClipboardParts, pointer: Pick<Pointer, "last">, text
   try {
     part = JSON.parse(text);
   } catch {
-    return parts.notices.tell({ level: "warning", text: text ? "The clipboard holds no part of a scene" : "Nothing was copied yet", remedy: "Select things and copy them with Ctrl+C." });
+    return parts.notices.tell({ level: "warning", text: text ? t("The clipboard holds no part of a scene") : t("Nothing was copied yet"), remedy: t("Select things and copy them with Ctrl+C.") });
   }
   const drop = pointer.last.over ? dropAt(parts, pointer.last.x, pointer.last.y) : undefined;
   const pasted = await parts.server.command("entity.paste", { part, ...(drop && { drop }) });

@@ -2,6 +2,7 @@
 // Locked entities stay where they are: what the user asks for is sent for the others, and one message names those that stayed.
 import { nameOf } from "../document/scene_document";
 import type { Parts } from "../parts";
+import { t } from "../language";
 
 export function isLocked(parts: Pick<Parts, "document">, index: number): boolean {
   return parts.document.entity(index)?.locked === true;
@@ -16,11 +17,10 @@ export function withoutLocked(parts: Pick<Parts, "server" | "notices" | "documen
   const locked = indices.filter((index) => isLocked(parts, index));
   if (locked.length > 0) {
     const first = nameOf(parts.document.entity(locked[0]!)!);
-    const others = locked.length === 1 ? "" : locked.length === 2 ? " and 1 other" : ` and ${locked.length - 1} others`;
     parts.notices.tell({
       level: "info",
-      text: `${first}${others} ${locked.length === 1 ? "is" : "are"} locked and stayed`,
-      action: { label: "Unlock", run: () => setLocked(parts, locked, false) },
+      text: locked.length === 1 ? t("{{name}} is locked and stayed", { name: first }) : t("{{name}} and {{count}} others are locked and stayed", { name: first, count: locked.length - 1 }),
+      action: { label: t("Unlock"), run: () => setLocked(parts, locked, false) },
     });
   }
   return unlocked(parts, indices);

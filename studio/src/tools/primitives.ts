@@ -2,6 +2,7 @@
 import type { NewEntity } from "../connection/messages";
 import type { Pose, Shape, ShapeOfLengths } from "../connection/scene_types";
 import { SHAPES_OF_LENGTHS } from "../view/shapes_of_lengths";
+import { t } from "../language";
 
 export interface Primitive {
   name: string;
@@ -28,13 +29,13 @@ function ofCategory(category: string, label: string, drawing: string, shape: Sha
 /** The primitives, at the size of things that are held with two hands. */
 export const PRIMITIVES: readonly Primitive[] = [
   ...Object.entries(SHAPES_OF_LENGTHS).map(([type, { label, drawing, offered }]) => primitive(label, drawing, { type, ...offered } as ShapeOfLengths)),
-  ofKind("cloth", "cloth", "Cloth", "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),
-  ofKind("round-cloth", "cloth", "Round cloth", "M4 14c0-8 24-8 24 0 0 3-2 8-4 10-2-3-4 2-8 0s-6 3-8 0c-2-2-4-7-4-10z", { type: "cylinder", radius: 0.6, half_height: 0.001 }),
-  ofKind("rope", "rope", "Rope", "M4 9c4 0 4 14 12 14s8-14 12-14M4 12c3 0 4 14 12 14s9-14 12-14", { type: "capsule", radius: 0.01, half_height: 0.75 }, {
+  ofKind("cloth", "cloth", t("Cloth"), "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),
+  ofKind("round-cloth", "cloth", t("Round cloth"), "M4 14c0-8 24-8 24 0 0 3-2 8-4 10-2-3-4 2-8 0s-6 3-8 0c-2-2-4-7-4-10z", { type: "cylinder", radius: 0.6, half_height: 0.001 }),
+  ofKind("rope", "rope", t("Rope"), "M4 9c4 0 4 14 12 14s8-14 12-14M4 12c3 0 4 14 12 14s9-14 12-14", { type: "capsule", radius: 0.01, half_height: 0.75 }, {
     rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2],
   }),
-  ofKind("water", "fluid", "Water", "M16 5c5 7 8 10 8 14a8 8 0 0 1-16 0c0-4 3-7 8-14zM12 20a4 4 0 0 0 4 4", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
-  ofCategory("sand", "Sand", "M3 25c4-1 8-15 13-15s9 14 13 15zM11 20l.1 0M16 15l.1 0M16 21l.1 0M21 20l.1 0", { type: "cylinder", radius: 0.15, half_height: 0.12 }),
-  ofCategory("cushion", "Cushion", "M5 9c4 2 18 2 22 0 1 4 1 11 0 15-4-2-18-2-22 0-1-4-1-11 0-15z", { type: "box", half_extents: [0.22, 0.08, 0.22] }),
-  primitive("Plane", "M3 20l8-8h18l-8 8zM16 16V7M16 7l-2.5 3M16 7l2.5 3", { type: "plane", normal: [0, 1, 0], offset: 0 }),
+  ofKind("water", "fluid", t("Water"), "M16 5c5 7 8 10 8 14a8 8 0 0 1-16 0c0-4 3-7 8-14zM12 20a4 4 0 0 0 4 4", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
+  ofCategory("sand", t("Sand"), "M3 25c4-1 8-15 13-15s9 14 13 15zM11 20l.1 0M16 15l.1 0M16 21l.1 0M21 20l.1 0", { type: "cylinder", radius: 0.15, half_height: 0.12 }),
+  ofCategory("cushion", t("Cushion"), "M5 9c4 2 18 2 22 0 1 4 1 11 0 15-4-2-18-2-22 0-1-4-1-11 0-15z", { type: "box", half_extents: [0.22, 0.08, 0.22] }),
+  primitive(t("Plane"), "M3 20l8-8h18l-8 8zM16 16V7M16 7l-2.5 3M16 7l2.5 3", { type: "plane", normal: [0, 1, 0], offset: 0 }),
 ];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { BoxGeometry, type BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry, SphereGeometry } from "three";
 import type { Shape, ShapeLengths, ShapeOfLengths, Vector } from "../connection/scene_types";
+import { t } from "../language";
 
 /** A length, or three along X, Y and Z, as a panel shows it: `factor` times the value of the scene file. */
 interface LengthField<Name> {
@@ -22,41 +23,41 @@ interface Kind<Lengths> {
   draw(lengths: Lengths): { geometry: BufferGeometry; size: Vector };
 }
 
-const RADIUS = { field: "radius", label: "Radius", factor: 1 } as const;
-const HEIGHT = { field: "half_height", label: "Height", factor: 2 } as const;
+const RADIUS = { field: "radius", label: t("Radius"), factor: 1 } as const;
+const HEIGHT = { field: "half_height", label: t("Height"), factor: 2 } as const;
 
 /** All shapes that are defined by their lengths alone: how each is drawn, sized and offered. */
 export const SHAPES_OF_LENGTHS: { readonly [Type in keyof ShapeLengths]: Kind<ShapeLengths[Type]> } = {
   box: {
-    label: "Box",
+    label: t("Box"),
     drawing: "M6 11l10-5 10 5v11l-10 5-10-5zM6 11l10 5 10-5M16 16v11",
     offered: { half_extents: [0.2, 0.2, 0.2] },
-    fields: [{ field: "half_extents", label: "Size", each: ["Width", "Height", "Depth"], factor: 2 }],
+    fields: [{ field: "half_extents", label: t("Size"), each: [t("Width"), t("Height"), t("Depth")], factor: 2 }],
     draw: ({ half_extents }) => ({ geometry: new BoxGeometry(2, 2, 2), size: half_extents }),
   },
   sphere: {
-    label: "Sphere",
+    label: t("Sphere"),
     drawing: "M16 6a10 10 0 1 0 0 20 10 10 0 0 0 0-20zM6 16c4 4.5 16 4.5 20 0",
     offered: { radius: 0.2 },
     fields: [RADIUS],
     draw: ({ radius }) => ({ geometry: new SphereGeometry(1, 32, 20), size: [radius, radius, radius] }),
   },
   capsule: {
-    label: "Capsule",
+    label: t("Capsule"),
     drawing: "M10 12a6 6 0 0 1 12 0v8a6 6 0 0 1-12 0zM10 12c2 2.5 10 2.5 12 0M10 20c2 2.5 10 2.5 12 0",
     offered: { radius: 0.12, half_height: 0.15 },
-    fields: [RADIUS, { ...HEIGHT, label: "Straight part" }],
+    fields: [RADIUS, { ...HEIGHT, label: t("Straight part") }],
     draw: ({ radius, half_height }) => ({ geometry: new CapsuleGeometry(radius, 2 * half_height, 10, 24, 1), size: [1, 1, 1] }),
   },
   cylinder: {
-    label: "Cylinder",
+    label: t("Cylinder"),
     drawing: "M8 9c0-4 16-4 16 0v14c0 4-16 4-16 0zM8 9c0 4 16 4 16 0",
     offered: { radius: 0.2, half_height: 0.2 },
     fields: [RADIUS, HEIGHT],
     draw: ({ radius, half_height }) => ({ geometry: new CylinderGeometry(1, 1, 2, 40), size: [radius, half_height, radius] }),
   },
   cone: {
-    label: "Cone",
+    label: t("Cone"),
     drawing: "M16 5l9 18c0 4-18 4-18 0zM7 23c0-3.5 18-3.5 18 0",
     offered: { radius: 0.2, half_height: 0.25 },
     fields: [RADIUS, HEIGHT],

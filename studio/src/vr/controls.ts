@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
+import { t } from "../language";
 // What the hands do in a headset, for the help on the page and in the room.
 
 export type Control = readonly [gesture: string, what: string];
 
 export const CONTROLS: readonly Control[] = [
-  ["Trigger or squeeze at a thing", "take it, carry it; in a run, throw it"],
-  ["Trigger with the ray", "take far things, press buttons"],
-  ["Stick while the ray holds", "nearer, farther, turn"],
-  ["Second hand on the thing", "turn it, make it larger or smaller"],
-  ["Stick forward, let go", "go there"],
-  ["Right stick aside", "turn yourself"],
-  ["Both squeezes on nothing", "move, turn and scale the world"],
-  ["X, or look at the left wrist", "menu"],
-  ["Y, A, B", "models, details, undo"],
+  [t("Trigger or squeeze at a thing"), t("take it, carry it; in a run, throw it")],
+  [t("Trigger with the ray"), t("take far things, press buttons")],
+  [t("Stick while the ray holds"), t("nearer, farther, turn")],
+  [t("Second hand on the thing"), t("turn it, make it larger or smaller")],
+  [t("Stick forward, let go"), t("go there")],
+  [t("Right stick aside"), t("turn yourself")],
+  [t("Both squeezes on nothing"), t("move, turn and scale the world")],
+  [t("X, or look at the left wrist"), t("menu")],
+  ["Y, A, B", t("models, details, undo")],
 ];
 
 /** The same with tracked hands: a pinch is the trigger, a fist the squeeze. */
 export const HAND_CONTROLS: readonly Control[] = [
-  ["Pinch", "take, press; at the floor: go there"],
-  ["Both fists", "move, turn and scale the world"],
-  ["Back of the left hand to the eyes", "menu"],
+  [t("Pinch"), t("take, press; at the floor: go there")],
+  [t("Both fists"), t("move, turn and scale the world")],
+  [t("Back of the left hand to the eyes"), t("menu")],
 ];

@@ -4,6 +4,7 @@ import { Desk } from "./ui/desk";
 import { SMALL, TEXT } from "./ui/painter";
 import { BAR, Panel } from "./ui/panel";
 import { label, type Widget } from "./ui/widgets";
+import { t } from "../language";
 
 /** mm */
 const WIDTH = 440;
@@ -13,7 +14,7 @@ const HEIGHT = BAR + 44 + ROW * (CONTROLS.length + HAND_CONTROLS.length + 1);
 
 /** What the hands can do, as a card in the room. */
 export class HelpPanel {
-  readonly panel = new Panel({ id: "help", title: "What your hands can do", width: WIDTH, height: HEIGHT, hasBar: true });
+  readonly panel = new Panel({ id: "help", title: t("What your hands can do"), width: WIDTH, height: HEIGHT, hasBar: true });
 
   constructor(private readonly desk: Desk) {
     desk.add(this.panel);
@@ -25,7 +26,7 @@ export class HelpPanel {
     };
     for (const [gesture, what] of CONTROLS) row(gesture, what);
     y += 8;
-    rows.push(label("tracked", { x: 14, y, w: WIDTH - 28, h: ROW }, "With your bare hands", { size: TEXT, bold: true }));
+    rows.push(label("tracked", { x: 14, y, w: WIDTH - 28, h: ROW }, t("With your bare hands"), { size: TEXT, bold: true }));
     y += ROW;
     for (const [gesture, what] of HAND_CONTROLS) row(gesture, what);
     this.panel.widgets = [Desk.closer(this.panel), ...rows];

@@ -14,6 +14,7 @@ import { lengthText, type Tape } from "./tape";
 import { TextLabel } from "./text_label";
 import type { Desk } from "./ui/desk";
 import type { WristMenu } from "./wrist_menu";
+import { t } from "../language";
 
 const PLAIN = new Color(0xdfe6ee);
 const CAN_GRAB = new Color(0xff9d2e);
@@ -212,7 +213,7 @@ export class Interaction {
       this.label.show(`${lengthText(this.size.x)} × ${lengthText(this.size.y)} × ${lengthText(this.size.z)}`, this.place, stance.head);
     } else if (pointed !== undefined && isLocked(this.parts.document.entity(pointed))) {
       this.place.copy(aim.hit!.point).y += 0.08 * stance.scale;
-      this.label.show(`${nameOf(this.parts.document.entity(pointed)!)}: locked`, this.place, stance.head);
+      this.label.show(t("{{name}}: locked", { name: nameOf(this.parts.document.entity(pointed)!) }), this.place, stance.head);
     } else this.label.hide();
   }
 

@@ -10,6 +10,7 @@ import { keyboard, speech } from "./ui/keyboard";
 import { type Box, SMALL, TEXT } from "./ui/painter";
 import { BAR, Panel } from "./ui/panel";
 import { button, label, type Widget } from "./ui/widgets";
+import { countText, t, translateServerText } from "../language";
 
 /** mm */
 const WIDTH = 470;
@@ -27,15 +28,15 @@ const SEARCH_DELAY_MS = 250;
 const MOST_REMEMBERED = 60;
 const MOST_PICTURES = 240;
 
-const ALL = "All";
-const SHAPES = "Shapes";
-const FAVOURITES = "Favourites";
-const RECENT = "Recent";
+const ALL = t("All");
+const SHAPES = t("Shapes");
+const FAVOURITES = t("Favourites");
+const RECENT = t("Recent");
 const OWN = [ALL, SHAPES, RECENT, FAVOURITES];
 
 /** The catalogue as a panel in the room: categories, search, pictures; a tile is pulled out with the trigger. */
 export class ModelPanel {
-  readonly panel = new Panel({ id: "models", title: "Models", width: WIDTH, height: HEIGHT, hasBar: true });
+  readonly panel = new Panel({ id: "models", title: t("Models"), width: WIDTH, height: HEIGHT, hasBar: true });
   private categories: { category: string; models: number }[] = [];
   private category = ALL;
   private words = "";
@@ -155,7 +156,7 @@ export class ModelPanel {
           painter.fill(box, 6, "ground");
           painter.outline(box, 6, this.types || hover ? "accent" : "line", 1);
           painter.icon("search", box.x + 17, box.y + box.h / 2, 15, "dim");
-          painter.text(this.words || "Search models", box.x + 34, box.y + box.h / 2, { size: TEXT, color: this.words ? "text" : "dim", width: box.w - 44 });
+          painter.text(this.words || t("Search models"), box.x + 34, box.y + box.h / 2, { size: TEXT, color: this.words ? "text" : "dim", width: box.w - 44 });
         },
         release: (_x, _y, inside) => {
           if (!inside) return;
@@ -177,7 +178,7 @@ export class ModelPanel {
     const names = all.slice(this.firstName, this.firstName + NAMES_SHOWN).map((name, line) => {
       const models = this.categories.find(({ category }) => category === name)?.models;
       const box = at(line + 1);
-      return button({ id: `category-${name}`, box, label: models ? `${name} ${models}` : name, on: this.category === name, run: () => this.choose(name) });
+      return button({ id: `category-${name}`, box, label: models ? `${translateServerText(name)} ${models}` : translateServerText(name), on: this.category === name, run: () => this.choose(name) });
     });
     return [
       button({ id: "names-up", box: at(0), icon: "up", off: this.firstName === 0, run: () => page(-1) }),
@@ -214,7 +215,7 @@ export class ModelPanel {
   private pager(): Widget[] {
     const y = HEIGHT - 40;
     const last = Math.min(this.first + PAGE, this.total);
-    const text = this.total === 0 ? "" : `${this.first + 1} – ${last} of ${this.total.toLocaleString("en")}`;
+    const text = this.total === 0 ? "" : t("{{first}} – {{last}} of {{total}}", { first: this.first + 1, last, total: countText(this.total) });
     return [
       button({ id: "page-up", box: { x: LIST + 16, y, w: 60, h: 30 }, icon: "up", off: this.first === 0, run: () => this.page(-ROWS) }),
       label("count", { x: LIST + 84, y, w: WIDTH - LIST - 164, h: 30 }, text, { size: SMALL, color: "dim", align: "center" }),
@@ -223,7 +224,7 @@ export class ModelPanel {
   }
 
   private nothing(): Widget[] {
-    const text = this.words ? `No model matches “${this.words}”. Try fewer or shorter words, or another category.` : this.category === RECENT ? "What you add appears here." : this.category === FAVOURITES ? "Mark models with the star in the page's browser." : "No models yet: run “embody import”.";
+    const text = this.words ? t("No model matches “{{words}}”. Try fewer or shorter words, or another category.", { words: this.words }) : this.category === RECENT ? t("What you add appears here.") : this.category === FAVOURITES ? t("Mark models with the star in the page's browser.") : t("No models yet: run “embody import”.");
     return [label("empty", { x: LIST + 24, y: BAR + 70, w: WIDTH - LIST - 44, h: 80 }, text, { size: TEXT, color: "dim", rows: 4 })];
   }
 

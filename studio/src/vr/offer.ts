@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+import { t } from "../language";
 
 /** What this browser and this address can show in a headset. */
 export interface Offer {
@@ -17,8 +18,8 @@ export async function findOffer(): Promise<Offer> {
   if (!isSecureContext)
     return {
       ...none,
-      why: "Headsets need https",
-      remedy: "Start “embody serve --tls --address 0.0.0.0” and open the address that it prints.",
+      why: t("Headsets need https"),
+      remedy: t("Start “embody serve --tls --address 0.0.0.0” and open the address that it prints."),
       isNeeded: true,
     };
   const supports = async (mode: XRSessionMode): Promise<boolean> => (await navigator.xr?.isSessionSupported(mode).catch(() => false)) ?? false;
@@ -26,8 +27,8 @@ export async function findOffer(): Promise<Offer> {
   if (vr || ar) return { vr, ar, why: "", remedy: "", isNeeded: false };
   return {
     ...none,
-    why: "No headset found",
-    remedy: "Open this page in the headset's own browser, or connect a headset to this computer and reload.",
+    why: t("No headset found"),
+    remedy: t("Open this page in the headset's own browser, or connect a headset to this computer and reload."),
     isNeeded: false,
   };
 }

@@ -11,6 +11,7 @@ import { Desk } from "./ui/desk";
 import { SMALL, TEXT } from "./ui/painter";
 import { BAR, Panel } from "./ui/panel";
 import { button, label, slider, type Widget } from "./ui/widgets";
+import { t, translateServerText } from "../language";
 
 /** mm */
 const WIDTH = 400;
@@ -28,7 +29,7 @@ const FIRST = ["mass", "friction_static", "friction_dynamic", "restitution", "de
 
 /** What the selected thing is made of, with sliders; and what can be done with it. */
 export class PropertyPanel {
-  readonly panel = new Panel({ id: "properties", title: "Properties", width: WIDTH, height: HEIGHT, hasBar: true });
+  readonly panel = new Panel({ id: "properties", title: t("Properties"), width: WIDTH, height: HEIGHT, hasBar: true });
   private entries: AttributeEntry[] = [];
   private first = 0;
   private timer = 0;
@@ -95,8 +96,8 @@ export class PropertyPanel {
 
   private layOut(): void {
     const entity = this.index === undefined ? undefined : this.parts.document.entity(this.index);
-    this.panel.options.title = entity ? nameOf(entity) : "Nothing selected";
-    this.panel.widgets = [Desk.closer(this.panel), ...(entity ? [...this.headOf(isLocked(entity)), ...this.rows(), ...this.pager()] : [label("none", { x: 16, y: HEAD, w: WIDTH - 32, h: 80 }, "Grab a thing, or point at it and pull the trigger.", { color: "dim", rows: 3 })])];
+    this.panel.options.title = entity ? nameOf(entity) : t("Nothing selected");
+    this.panel.widgets = [Desk.closer(this.panel), ...(entity ? [...this.headOf(isLocked(entity)), ...this.rows(), ...this.pager()] : [label("none", { x: 16, y: HEAD, w: WIDTH - 32, h: 80 }, t("Grab a thing, or point at it and pull the trigger."), { color: "dim", rows: 3 })])];
     this.panel.renew();
   }
 
@@ -105,15 +106,15 @@ export class PropertyPanel {
     const text = [size.x, size.y, size.z].map((length) => length.toFixed(2)).join(" × ");
     const width = (WIDTH - 24 - 4 * 5) / 6;
     const tools: [string, IconName, string, boolean, () => void][] = [
-      ["duplicate", "copy", "Copy", false, () => this.act("edit.duplicate")],
-      ["delete", "bin", "Delete", false, () => this.act("edit.delete")],
-      ["drop", "drop", "Drop", false, () => this.act("edit.drop")],
-      ["lock", locked ? "lock" : "unlock", locked ? "Locked" : "Lock", locked, () => void this.parts.server.command("entity.lock", { indices: [...this.parts.selection.indices], locked: !locked })],
-      ["snap", "snap", "Snap", this.parts.preferences.get("snap"), () => this.act("tool.snap")],
-      ["undo", "undo", "Undo", false, () => this.act("edit.undo")],
+      ["duplicate", "copy", t("Copy"), false, () => this.act("edit.duplicate")],
+      ["delete", "bin", t("Delete"), false, () => this.act("edit.delete")],
+      ["drop", "drop", t("Drop"), false, () => this.act("edit.drop")],
+      ["lock", locked ? "lock" : "unlock", locked ? t("Locked") : t("Lock"), locked, () => void this.parts.server.command("entity.lock", { indices: [...this.parts.selection.indices], locked: !locked })],
+      ["snap", "snap", t("Snap"), this.parts.preferences.get("snap"), () => this.act("tool.snap")],
+      ["undo", "undo", t("Undo"), false, () => this.act("edit.undo")],
     ];
     return [
-      label("size", { x: 14, y: BAR + 4, w: WIDTH - 28, h: 18 }, `${text} m (width × height × depth)`, { size: SMALL, color: "dim" }),
+      label("size", { x: 14, y: BAR + 4, w: WIDTH - 28, h: 18 }, t("{{size}} m (width × height × depth)", { size: text }), { size: SMALL, color: "dim" }),
       ...tools.map(([id, icon, name, on, run], at) => button({ id, icon, label: name, on, run, box: { x: 12 + at * (width + 4), y: BAR + 26, w: width, h: 42 } })),
     ];
   }
@@ -134,9 +135,9 @@ export class PropertyPanel {
     const likely = entry.low === null || entry.high === null || entry.low === undefined ? null : ([scale.part(entry.low), scale.part(entry.high!)] as [number, number]);
     const interval = likely ? `80 %: ${short(entry.low!)} … ${short(entry.high!)}` : "";
     const why = this.refused.get(name);
-    const source = why ?? [interval, overridden ? "set by hand" : entry.source].filter(Boolean).join("  ·  ");
+    const source = why ?? [interval, overridden ? t("set by hand") : translateServerText(entry.source)].filter(Boolean).join("  ·  ");
     return [
-      label(`name-${name}`, { x: 14, y, w: 200, h: 20 }, entry.label || name, { size: TEXT - 1 }),
+      label(`name-${name}`, { x: 14, y, w: 200, h: 20 }, translateServerText(entry.label) || name, { size: TEXT - 1 }),
       label(`value-${name}`, { x: 214, y, w: WIDTH - 228 - 34, h: 20 }, `${short(value)}${unit && unit !== "1" ? ` ${unit}` : ""}`, { size: TEXT - 1, bold: true, align: "right", color: overridden ? "accent" : "text" }),
       slider({ id: `slider-${name}`, box: { x: 10, y: y + 18, w: WIDTH - 58, h: 26 }, part: scale.part(value), likely, change: (part) => this.change(entry, scale.value(part)), end: () => (this.merge = "") }),
       button({ id: `reset-${name}`, box: { x: WIDTH - 42, y: y + 4, w: 30, h: 36 }, icon: "undo", off: !overridden, run: () => void this.reset(name) }),
@@ -149,7 +150,7 @@ export class PropertyPanel {
     const last = Math.min(this.first + ROWS, this.entries.length);
     return [
       button({ id: "rows-up", box: { x: 12, y, w: 70, h: 28 }, icon: "up", off: this.first === 0, run: () => this.page(-ROWS) }),
-      label("rows", { x: 90, y, w: WIDTH - 180, h: 28 }, `${this.first + 1} – ${last} of ${this.entries.length}`, { size: SMALL, color: "dim", align: "center" }),
+      label("rows", { x: 90, y, w: WIDTH - 180, h: 28 }, t("{{first}} – {{last}} of {{total}}", { first: this.first + 1, last, total: this.entries.length }), { size: SMALL, color: "dim", align: "center" }),
       button({ id: "rows-down", box: { x: WIDTH - 82, y, w: 70, h: 28 }, icon: "down", off: last >= this.entries.length, run: () => this.page(ROWS) }),
     ];
   }

@@ -4,6 +4,7 @@ import type { NewEntity } from "../connection/messages";
 import type { Parts } from "../parts";
 import type { Stance } from "./stance";
 import type { TextPanel } from "./text_panel";
+import { t, translateServerText } from "../language";
 
 /** Surfaces of the real room become boxes so thick, m: thin ones would let fast things through. */
 const THICKNESS = 0.1;
@@ -42,10 +43,10 @@ export class RealRoom {
     if (this.surfaces.length === 0) return;
     this.asked = true;
     const count = this.surfaces.length;
-    const text = `Your headset knows ${count === 1 ? "one surface" : `${count} surfaces`} of this room. As still things in the scene, what falls lands on your floor and table.`;
-    this.ask.choose("Your real room", text, [
-      { id: "use-room", label: "Use them", run: () => void this.add() },
-      { id: "skip-room", label: "Leave them out", run: () => {} },
+    const text = t("Your headset knows {{count}} surfaces of this room. As still things in the scene, what falls lands on your floor and table.", { count });
+    this.ask.choose(t("Your real room"), text, [
+      { id: "use-room", label: t("Use them"), run: () => void this.add() },
+      { id: "skip-room", label: t("Leave them out"), run: () => {} },
     ]);
   }
 
@@ -59,7 +60,7 @@ export class RealRoom {
     }
     // Locked where the server knows locks: hands don't take the real floor away.
     await server.request("entity.lock", { indices: this.indices, locked: true }).catch(() => {});
-    this.parts.notices.tell({ level: "info", text: `${this.indices.length} surfaces of your room are in the scene`, remedy: "When you leave you are asked whether they stay." });
+    this.parts.notices.tell({ level: "info", text: t("{{count}} surfaces of your room are in the scene", { count: this.indices.length }), remedy: t("When you leave you are asked whether they stay.") });
   }
 
   /** At the end: the surfaces stay in the scene, or go in one step of undo. */
@@ -98,7 +99,7 @@ function surfacesOf(frame: XRFrame, space: XRReferenceSpace): Surface[] {
     if ((high[0] - low[0]) * (high[1] - low[1]) < LEAST_AREA) continue;
     const label = (plane as { semanticLabel?: string }).semanticLabel;
     const kind = label ?? (plane.orientation === "vertical" ? "wall" : "surface");
-    surfaces.push({ name: `Real ${kind}`, matrix: new Matrix4().fromArray(pose.transform.matrix), low, high });
+    surfaces.push({ name: t("Real {{kind}}", { kind: translateServerText(kind) }), matrix: new Matrix4().fromArray(pose.transform.matrix), low, high });
   }
   return surfaces;
 }

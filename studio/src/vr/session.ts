@@ -23,6 +23,7 @@ import { MessagePanel, TextPanel } from "./text_panel";
 import { Touch } from "./touch";
 import { Desk } from "./ui/desk";
 import { WristMenu } from "./wrist_menu";
+import { t } from "../language";
 
 export type VrParts = Pick<Parts, "preferences" | "server" | "notices" | "people" | "document" | "playback" | "selection" | "motion" | "models" | "entities" | "view">;
 
@@ -124,7 +125,7 @@ export class VrSession {
       view.drawForHeadset(this.headset, mode === "immersive-ar");
     } catch (error) {
       this.end();
-      notices.tell({ level: "error", text: `The headset could not be used: ${(error as Error).message}`, remedy: "Put it on, wake it up and try again." });
+      notices.tell({ level: "error", text: t("The headset could not be used: {{message}}", { message: (error as Error).message }), remedy: t("Put it on, wake it up and try again.") });
     }
   }
 
@@ -136,9 +137,9 @@ export class VrSession {
       await room.end(keep);
       void this.session?.end();
     };
-    this.ask.choose("Leave", `${room.indices.length} surfaces of your real room are in the scene. Shall they stay in it?`, [
-      { id: "remove-room", label: "Take them out", run: () => void leave(false) },
-      { id: "keep-room", label: "Keep them", run: () => void leave(true) },
+    this.ask.choose(t("Leave"), t("{{count}} surfaces of your real room are in the scene. Shall they stay in it?", { count: room.indices.length }), [
+      { id: "remove-room", label: t("Take them out"), run: () => void leave(false) },
+      { id: "keep-room", label: t("Keep them"), run: () => void leave(true) },
     ]);
   }
 
@@ -241,7 +242,7 @@ export class VrSession {
     stance.standAt(this.moving.teleport.floorBelow(this.eye, this.feet));
     stance.setLift(settings.heightOffset);
     if (settings.dollhouse && !this.room) this.setDollhouse(true);
-    this.message.tell("info", "Menu: X, or the back of your left wrist. Models: Y", "“Moving” in the menu says what your hands can do.");
+    this.message.tell("info", t("Menu: X, or the back of your left wrist. Models: Y"), t("“Moving” in the menu says what your hands can do."));
   }
 
   private setDollhouse(on: boolean): void {
@@ -271,11 +272,11 @@ export class VrSession {
     const { server, document: scene, notices } = this.parts;
     const save = async (name?: string): Promise<void> => {
       const saved = await server.command("scene.save", name === undefined ? {} : { name });
-      if (saved) notices.tell({ level: "info", text: `Saved “${saved.name}”` });
+      if (saved) notices.tell({ level: "info", text: t("Saved “{{name}}”", { name: saved.name }) });
     };
     if (scene.name) return void save();
     this.menu.unpin();
-    this.ask.ask("Save the scene as", scene.title, (name) => void save(name));
+    this.ask.ask(t("Save the scene as"), scene.title, (name) => void save(name));
   }
 
   private choices(): ConstructorParameters<typeof WristMenu>[4] {

@@ -4,6 +4,7 @@ import { keyboard } from "./ui/keyboard";
 import { SMALL, TEXT } from "./ui/painter";
 import { BAR, Panel } from "./ui/panel";
 import { button, label, type Widget } from "./ui/widgets";
+import { t } from "../language";
 
 const WIDTH = 400;
 const HEIGHT = 300;
@@ -72,7 +73,7 @@ function field(id: string, text: string): Widget {
     paint: (painter) => {
       painter.fill(box, 6, "ground");
       painter.outline(box, 6, "accent", 1);
-      painter.text(text || "Name", box.x + 12, box.y + box.h / 2, { size: TEXT, color: text ? "text" : "dim", width: box.w - 24 });
+      painter.text(text || t("Name"), box.x + 12, box.y + box.h / 2, { size: TEXT, color: text ? "text" : "dim", width: box.w - 24 });
     },
   };
 }

@@ -8,6 +8,7 @@ import type { Stance } from "./stance";
 import type { Desk } from "./ui/desk";
 import { Panel } from "./ui/panel";
 import { button, type ButtonOptions, type Widget } from "./ui/widgets";
+import { t } from "../language";
 
 /** mm */
 const WIDTH = 334;
@@ -38,7 +39,7 @@ export interface MenuChoices {
 
 /** The menu over the left wrist: shown when looked at, or before the user by a button. */
 export class WristMenu {
-  readonly panel = new Panel({ id: "wrist", title: "Menu", width: WIDTH, height: HEIGHT });
+  readonly panel = new Panel({ id: "wrist", title: t("Menu"), width: WIDTH, height: HEIGHT });
   /** Opened by the button: it stays where it is until the button is pressed again. */
   private isPinned = false;
   private readonly toEyes = new Vector3();
@@ -113,25 +114,25 @@ export class WristMenu {
     };
     const rows: Omit<ButtonOptions, "box">[][] = [
       [
-        { ...of("simulation.play", playing ? "Pause" : "Play", playing ? "pause" : "play"), color: "accent" },
-        of("simulation.step", "Step"),
-        of("simulation.reset", "Reset"),
-        of("simulation.keep", "Settle"),
-        { id: "save", label: "Save", icon: "save", run: () => choices.save() },
+        { ...of("simulation.play", playing ? t("Pause") : t("Play"), playing ? "pause" : "play"), color: "accent" },
+        of("simulation.step", t("Step")),
+        of("simulation.reset", t("Reset")),
+        of("simulation.keep", t("Settle")),
+        { id: "save", label: t("Save"), icon: "save", run: () => choices.save() },
       ],
       [
-        of("edit.undo", "Undo"),
-        of("edit.redo", "Redo"),
-        of("tool.snap", "Snap"),
-        { id: "tape", label: "Measure", icon: "tape", on: choices.tapeOn, run: () => choices.toggleTape() },
-        { id: "dollhouse", label: choices.dollhouse ? "Life-size" : "1 : 10", icon: choices.dollhouse ? "person" : "house", on: choices.dollhouse, run: () => choices.toggleDollhouse() },
+        of("edit.undo", t("Undo")),
+        of("edit.redo", t("Redo")),
+        of("tool.snap", t("Snap")),
+        { id: "tape", label: t("Measure"), icon: "tape", on: choices.tapeOn, run: () => choices.toggleTape() },
+        { id: "dollhouse", label: choices.dollhouse ? t("Life-size") : "1 : 10", icon: choices.dollhouse ? "person" : "house", on: choices.dollhouse, run: () => choices.toggleDollhouse() },
       ],
       [
-        { id: "models", label: "Models", icon: "models", run: () => choices.openModels() },
-        { id: "properties", label: "Details", icon: "sliders", off: this.parts.selection.indices.length === 0, run: () => choices.openProperties() },
-        of("edit.delete", "Delete"),
-        { id: "settings", label: "Moving", icon: "gear", run: () => choices.openSettings() },
-        { id: "leave", label: "Leave", icon: "leave", run: () => choices.leave() },
+        { id: "models", label: t("Models"), icon: "models", run: () => choices.openModels() },
+        { id: "properties", label: t("Details"), icon: "sliders", off: this.parts.selection.indices.length === 0, run: () => choices.openProperties() },
+        of("edit.delete", t("Delete")),
+        { id: "settings", label: t("Moving"), icon: "gear", run: () => choices.openSettings() },
+        { id: "leave", label: t("Leave"), icon: "leave", run: () => choices.leave() },
       ],
     ];
     return rows.flatMap((row, line) => row.map((each, column) => button({ ...each, box: { x: EDGE + column * (CELL + GAP), y: EDGE + line * (TALL + GAP + 2), w: CELL, h: TALL } })));

@@ -2,6 +2,7 @@
 import type { IconName } from "../../tools/icons";
 import type { Box } from "./painter";
 import { button, type Widget } from "./widgets";
+import { t } from "../../language";
 
 const ROWS = ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm"];
 /** mm */
@@ -33,8 +34,8 @@ export function keyboard({ box, type, erase, done, listen, hears }: KeyboardOpti
     ...letters,
     key("erase", at(8, 3, 2), erase, { icon: "backspace" }),
     ...(listen ? [key("listen", at(0, 4, 2), listen, { icon: "microphone", on: hears })] : []),
-    key("space", at(listen ? 2 : 0, 4, listen ? 6 : 8), () => type(" "), { label: "space" }),
-    key("done", at(8, 4, 2), done, { label: "OK" }),
+    key("space", at(listen ? 2 : 0, 4, listen ? 6 : 8), () => type(" "), { label: t("space") }),
+    key("done", at(8, 4, 2), done, { label: t("OK") }),
   ];
 }
 

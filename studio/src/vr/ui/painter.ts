@@ -16,9 +16,15 @@ export type ColorName = (typeof NAMES)[number];
 /** Font size, mm. At 0.6 m a millimetre is 0.095°: 13 mm are 1.24°. */
 export const TEXT = 16;
 export const SMALL = 13;
-const FONT = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+/** The names of Chinese fonts are for systems whose own fallback is a Japanese one. */
+const FONT = 'system-ui, "Segoe UI", "DejaVu Sans", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';
 
 const paths = new Map<IconName, Path2D>();
+
+/** The pieces of a text that a line may end after: words with the space behind them; Chinese characters with the marks that may not begin a line. */
+function breakable(text: string): string[] {
+  return text.replace(/\s+/g, " ").match(/[“（《]*\p{Script=Han}[，。；：、！？”）》…]*|(?:(?!\p{Script=Han}|[“（《]+\p{Script=Han})\S)+ ?| /gu) ?? [];
+}
 
 /** Draws on a panel's canvas in millimetres, in the page's colours. */
 export class Painter {
@@ -72,14 +78,14 @@ export class Painter {
     const { size, width, most } = options;
     this.context.font = `400 ${size}px ${FONT}`;
     const lines: string[] = [];
-    for (const word of text.split(/\s+/)) {
+    for (const piece of breakable(text)) {
       const last = lines.at(-1);
-      if (last !== undefined && this.context.measureText(`${last} ${word}`).width <= width) lines[lines.length - 1] = `${last} ${word}`;
-      else lines.push(word);
+      if (last !== undefined && this.context.measureText((last + piece).trimEnd()).width <= width) lines[lines.length - 1] = last + piece;
+      else lines.push(piece);
     }
     const shown = lines.slice(0, most);
-    if (lines.length > most) shown[most - 1] = `${shown[most - 1]} ${lines.slice(most).join(" ")}`;
-    shown.forEach((line, at) => this.text(line, x, y + at * 1.25 * size, options));
+    if (lines.length > most) shown[most - 1] = lines.slice(most - 1).join("");
+    shown.forEach((line, at) => this.text(line.trimEnd(), x, y + at * 1.25 * size, options));
   }
 
   icon(name: IconName, x: number, y: number, size: number, color: ColorName = "text"): void {
