@@ -35,6 +35,8 @@ export class JointMarks {
 
   /** Draws exactly these, for an eye here. */
   show(marks: readonly JointMark[], eye: Vector3): void {
+    // Most pictures have none: they make no buffers.
+    if (marks.length === 0 && !this.group.visible) return;
     const places: Vector3[] = [];
     const colors: Color[] = [];
     const line = (from: Vector3, to: Vector3, color: Color) => (places.push(from, to), colors.push(color, color));
