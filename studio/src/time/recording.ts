@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 import type { Parts } from "../parts";
-import { t } from "../language";
-import { translateServerText } from "../language/server_text";
+import { t, translateServerText } from "../language";
 import { drawBox, drawCaption } from "./caption";
 import { FilmWriter } from "./film_writer";
 
