@@ -46,6 +46,7 @@ import { ValueTools } from "./panels/value_tools";
 import { Studio } from "./studio";
 import { offerTestHook } from "./test_hook";
 import { timeActions } from "./time/time_actions";
+import { Recorder } from "./time/recorder";
 import { Timeline } from "./time/timeline";
 import { BuildTool } from "./tools/build_tool";
 import { Measures } from "./tools/measures";
@@ -104,7 +105,8 @@ function start(): void {
   actions.push({ id: "view.options", label: t("View options…"), group: t("View"), keys: [], icon: "options", run: () => openOptions(studio, actions, headsetButtons.offer) });
 
   const building = buildActions(build);
-  actions.push(...building, ...planActions(studio), ...timeActions(studio, () => void keepPoses(studio)));
+  const recorder = new Recorder(studio);
+  actions.push(...building, ...planActions(studio), ...timeActions(studio, recorder, () => void keepPoses(studio)));
   new Keyboard(studio, actions, pointer);
   pointer.menuWanted.on((at) => openContextMenu(studio, actions, at));
   new FileDrop(studio, () => browser.refresh());
@@ -137,7 +139,7 @@ function start(): void {
   new Touches(canvas, studio.view.rig, pointer);
   const tour = new Tour(studio, pointer.grabbed);
   actions.push({ id: "view.tour", label: t("First steps"), group: t("View"), keys: [], run: () => tour.begin() });
-  scene.append(timeline.root, new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
+  scene.append(timeline.root, recorder.root, new Overlays(studio).root, new PeopleCards(studio).root, new ArrangeBar(studio, actions).root, tour.root, new BuildBar(studio, build, building).root, new LevelBar(studio, build).root);
   build.changed.on(() => toolbar.refresh());
   studio.view.rig.planned.on(() => toolbar.refresh());
   document.body.append(new Toasts(studio).root);

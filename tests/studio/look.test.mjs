@@ -48,6 +48,16 @@ test("levels of detail look like full detail, and rays meet full detail", async 
   assert.deepEqual(page.faults, []);
 });
 
+test("leaves and lampshades are there on all levels of detail", async () => {
+  const keys = ["Blend Swap CC-0#plant", "Scopia#livingroom_lamp1", "Blend Swap CC-0#littlePlant"];
+  const entities = keys.map((key, at) => ({ index: at + 2, model: `sweethome3d:${key}`, pose: { position: [at - 1, 0, 0] } }));
+  const page = await open(entities, { position: [0, 1.5, 5], target: [0, 0.4, 0] });
+  const coarse = await pictureOfScene(page);
+  await page.evaluate(() => window.embody.showFullDetail(true));
+  const different = await difference(page, coarse, await pictureOfScene(page));
+  assert.ok(different < 0.003, `${different} of the picture differs`);
+});
+
 test("what is out of view is not drawn, and can be met by a ray", async () => {
   const box = (index, x) => ({ index, shape: { type: "box", half_extents: [0.5, 0.5, 0.5] }, pose: { position: [x, 0.5, 0] } });
   const page = await open([box(2, 0), box(3, 40)], { position: [0, 2, 6], target: [0, 0.5, 0] });

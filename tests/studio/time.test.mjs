@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { openStudio, takePicture } from "./browser.mjs";
+import { pictureDifference, playFilm } from "./film_files.mjs";
 import { Session } from "./session.mjs";
 
 const SCENE = {
@@ -153,36 +154,11 @@ describe("the line of time", { timeout: 900000 }, () => {
     await page.getByTestId("film-size").selectOption("640x360");
     await page.getByTestId("film-rate").selectOption("0.5");
     await page.getByTestId("film-fps").selectOption("24");
+    await page.getByTestId("film-text").fill("A fall");
     await picture("film");
     const [file] = await Promise.all([page.waitForEvent("download", { timeout: 240000 }), page.getByTestId("film-start").click()]);
     assert.equal(file.suggestedFilename(), "Fall.webm");
-    const bytes = readFileSync(await file.path()).toString("base64");
-    const viewer = await session.browser.newPage();
-    const film = await viewer.evaluate(async (base64) => {
-      const blob = await (await fetch(`data:video/webm;base64,${base64}`)).blob();
-      const video = document.createElement("video");
-      video.muted = true;
-      video.src = URL.createObjectURL(blob);
-      await new Promise((done, failed) => ((video.onloadedmetadata = done), (video.onerror = () => failed(new Error(video.error.message)))));
-      const canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
-      const pen = canvas.getContext("2d");
-      const pictures = [];
-      for (const time of [0, 1, 1.9]) {
-        video.currentTime = time;
-        await new Promise((done) => (video.onseeked = done));
-        pen.drawImage(video, 0, 0);
-        const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
-        // Where the red ball is, and how bright all is.
-        let light = 0, red = 0, row = 0;
-        for (let at = 0; at < data.length; at += 4) {
-          light += data[at] + data[at + 1] + data[at + 2];
-          if (data[at] > 110 && data[at] > 2 * data[at + 2]) ++red, (row += Math.floor(at / 4 / canvas.width));
-        }
-        pictures.push({ light: light / (data.length / 4) / 3, red, row: row / Math.max(red, 1) });
-      }
-      return { duration: video.duration, width: video.videoWidth, height: video.videoHeight, pictures };
-    }, bytes);
-    await viewer.close();
+    const film = await playFilm(session.browser, await file.path(), [0, 1, 1.9]);
     assert.deepEqual([film.width, film.height], [640, 360]);
     // A second of the run at half speed, and the length of the last picture.
     assert.ok(Math.abs(film.duration - 2) < 0.1, `${film.duration} s`);
@@ -192,6 +168,42 @@ describe("the line of time", { timeout: 900000 }, () => {
     const now = await session.command("time.curves", { curves: [{ index: 2, quantity: "height" }], from: 0.99 });
     await drawnAt(2, now.curves[0].values.at(-1));
     assert.equal(await page.evaluate(() => window.embody.take().state.shown), null);
+  });
+
+  it("records what the user does: picture, pointer, and what was done", async () => {
+    await page.evaluate(() => document.querySelector('[data-testid="canvas"]').focus());
+    await page.keyboard.press("Control+k");
+    await page.keyboard.type("record what");
+    await page.keyboard.press("Enter");
+    await page.getByTestId("record-pace").selectOption("smooth");
+    await page.getByTestId("record-text").fill("How it was built");
+    await page.getByTestId("record-start").click();
+    await page.getByTestId("recording").waitFor();
+    const canvas = await page.getByTestId("canvas").boundingBox();
+    const [from, to] = [await page.getByTestId("primitive-sphere").boundingBox(), { x: canvas.x + 0.3 * canvas.width, y: canvas.y + 0.7 * canvas.height }];
+    await page.waitForTimeout(1500);
+    await page.mouse.move(from.x + 10, from.y + 10);
+    await page.mouse.down();
+    for (let part = 0.1; part < 1.01; part += 0.1) {
+      await page.mouse.move(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
+      await page.waitForTimeout(100);
+    }
+    await page.mouse.up();
+    await page.waitForFunction(() => window.embody.entities().length === 4);
+    await page.waitForTimeout(3000);
+    await picture("recording");
+    const [file] = await Promise.all([page.waitForEvent("download", { timeout: 240000 }), page.getByTestId("recording-end").click()]);
+    assert.equal(file.suggestedFilename(), "Fall.webm");
+    await page.getByTestId("recording").waitFor({ state: "hidden" });
+    const { duration, width, height } = await playFilm(session.browser, await file.path(), []);
+    assert.ok(Math.abs(width / height - canvas.width / canvas.height) < 0.02, `${width} × ${height}`);
+    // Five seconds and more of work; of both pauses a second is left.
+    assert.ok(duration > 2 && duration < 5, `${duration} s`);
+    const film = await playFilm(session.browser, await file.path(), [0, duration - 0.1], process.env.EMBODY_TEST_PICTURES ?? null);
+    const [first, last] = film.pictures;
+    assert.ok(first.light > 15 && last.light > 15, "the scene is in the picture");
+    assert.ok(pictureDifference(first, last) > 0.3, "the ball was brought in");
+    assert.deepEqual(page.faults, []);
   });
 
   it("saves the run as a glTF animation that loads elsewhere", async () => {

@@ -15,8 +15,8 @@ const RATES: readonly [number, string][] = [
   [0.1, t("⅒ speed")],
 ];
 
-/** Asks what to film, and makes the film. */
-export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | "motion" | "entities" | "take" | "view">): void {
+/** Asks what to film, and makes the film; `openRecord` asks for a recording instead. */
+export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | "motion" | "entities" | "take" | "view">, openRecord: () => void): void {
   const { take } = parts;
   const number = (label: string, testId: string, value: number) => element("input", { type: "number", step: "any", min: 0, value: value.toFixed(2), "aria-label": label, "data-testid": testId });
   const choice = (label: string, testId: string, entries: readonly (readonly [number | string, string])[], value: number | string) => {
@@ -30,16 +30,18 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
   const fps = choice(t("Pictures a second"), "film-fps", [[24, t("24 a second")], [30, t("30 a second")], [60, t("60 a second")]], 30);
   const size = choice(t("Size"), "film-size", PICTURE_SIZES.map(([width, height]) => [`${width}x${height}`, `${width} × ${height}`] as const), "1280x720");
   const camera = choice(t("Camera"), "film-camera", [[0, t("stands as it is now")], [1, t("turns once about what it looks at")], [-1, t("turns once the other way")]], 0);
+  const text = element("input", { type: "text", maxlength: 80, "aria-label": t("Text over the film"), "data-testid": "film-text" });
   const note = element("p", { class: "note", role: "status", "data-testid": "film-note" });
   const bar = element("progress", { "aria-label": t("Progress"), "data-testid": "film-progress", max: 1, value: 0 });
   const start = element("button", { class: "primary", type: "submit", "data-testid": "film-start" }, t("Make the film"));
   const gltf = element("button", { type: "button", "data-testid": "film-gltf", title: t("A binary glTF file of all things and their motion, for Blender and others"), onclick: () => void run(exportAnimation) }, t("Save as glTF animation"));
+  const record = element("button", { type: "button", "data-testid": "film-record", title: t("Films the scene as you see it while you go on working"), onclick: () => (dialog.close(), openRecord()) }, t("Record what I do…"));
   const stop = element("button", { type: "button", "data-testid": "film-cancel", onclick: () => dialog.close() }, t("Cancel"));
   const running = new AbortController();
 
   const plan = (): FilmPlan => {
     const [width, height] = size.value.split("x").map(Number);
-    return { from: Number(from.value), to: Number(to.value), rate: Number(rate.value), fps: Number(fps.value), width: width!, height: height!, turns: Number(camera.value) };
+    return { from: Number(from.value), to: Number(to.value), rate: Number(rate.value), fps: Number(fps.value), width: width!, height: height!, turns: Number(camera.value), text: text.value.trim() };
   };
   const fault = ({ from: first, to: last }: FilmPlan): string | null => {
     if (!Number.isFinite(first) || !Number.isFinite(last) || last <= first) return t("The end must come after the beginning.");
@@ -53,7 +55,7 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
     setText(note, wrong ?? t("{{seconds}} s of film, {{pictures}} pictures. Nobody else sees anything of it.", { seconds: ((wanted.to - wanted.from) / wanted.rate).toFixed(1), pictures: picturesOf(wanted) }));
   };
   const row = (label: string, ...fields: HTMLElement[]) => element("label", { class: "film-row" }, element("span", {}, label), ...fields);
-  const fields = [from, to, rate, fps, size, camera];
+  const fields = [from, to, rate, fps, size, camera, text];
   for (const field of fields) field.addEventListener("input", describe);
   const form = element(
     "form",
@@ -64,9 +66,10 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
     row(t("Pictures"), fps),
     row(t("Size"), size),
     row(t("Camera"), camera),
+    row(t("Text"), text),
     note,
     bar,
-    dialogButtons(gltf, stop, start),
+    dialogButtons(record, gltf, stop, start),
   );
   const dialog = openDialog(t("Make a film of the run"), "film-dialog", form);
   dialog.addEventListener("close", () => running.abort());
@@ -82,7 +85,7 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
   async function run(work: (wanted: FilmPlan) => Promise<void>): Promise<void> {
     const wanted = plan();
     if (fault(wanted) || start.disabled) return;
-    for (const field of [...fields, start, gltf]) field.disabled = true;
+    for (const field of [...fields, start, gltf, record]) field.disabled = true;
     show(bar, true);
     try {
       await work(wanted);
@@ -95,7 +98,8 @@ export function openFilm(parts: Pick<Parts, "server" | "notices" | "document" | 
 
   async function exportFilm(wanted: FilmPlan): Promise<void> {
     // The encoder's part of the page is loaded by who makes films.
-    const { filmHindrance, makeFilm } = await import("./film");
+    const { filmHindrance } = await import("./film_writer");
+    const { makeFilm } = await import("./film");
     const hindrance = await filmHindrance(wanted.width, wanted.height);
     if (hindrance) throw new Error(hindrance);
     const film = await makeFilm(parts, wanted, tell(t("Picture")), running.signal);

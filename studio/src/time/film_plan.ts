@@ -10,6 +10,8 @@ export interface FilmPlan {
   height: number;
   /** Turns of the camera about what it looks at, from beginning to end. */
   turns: number;
+  /** Written over the lower left; empty: nothing. */
+  text: string;
 }
 
 /** Number of pictures, the first and the last moment among them. */

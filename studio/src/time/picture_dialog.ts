@@ -49,7 +49,7 @@ export function openPicture(parts: Pick<Parts, "notices" | "document" | "view">)
     describe();
   };
   const shown: [number, number] = [Math.round(canvas.clientWidth * devicePixelRatio), Math.round(canvas.clientHeight * devicePixelRatio)];
-  const sizes = [[t("as shown"), shown] as const, ...PICTURE_SIZES.slice(2).map((size) => [size.join(" × "), size] as const)];
+  const sizes = [[t("as shown"), shown] as const, ...PICTURE_SIZES.slice(3).map((size) => [size.join(" × "), size] as const)];
   for (const each of [width, height]) each.addEventListener("input", describe);
   const form = element(
     "form",

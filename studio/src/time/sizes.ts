@@ -2,6 +2,7 @@
 /** Widths and heights of pictures and films that screens have, pixels. */
 export const PICTURE_SIZES: readonly (readonly [number, number])[] = [
   [640, 360],
+  [960, 540],
   [1280, 720],
   [1920, 1080],
   [2560, 1440],

@@ -55,6 +55,8 @@ export class Pointer {
     canvas.addEventListener("pointerup", (event) => this.release(event));
     canvas.addEventListener("pointercancel", (event) => this.release(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    // On Linux a middle click pastes: moving the view would bring in what was copied.
+    for (const kind of ["mouseup", "auxclick"] as const) canvas.addEventListener(kind, (event) => event.button === 1 && event.preventDefault());
     canvas.addEventListener("pointermove", (event) => Object.assign(this.last, { x: event.clientX, y: event.clientY, over: true }));
     canvas.addEventListener("pointerleave", () => (this.last.over = false));
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });

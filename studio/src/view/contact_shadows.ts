@@ -7,8 +7,9 @@ import type { Quality } from "./tint";
 
 /** Footprints beside and below each other in one texture; models beyond these have no contact shadow. */
 const TILES_A_SIDE = 24;
-/** Things wider than this have none, m: floors, terrains, houses. */
+/** Things wider than this have none, m: floors, terrains, houses; nor have those that are so many times as long as wide. */
 const WIDEST = 12;
+const THINNEST = 15;
 /** Over this gap to what is below a shadow fades out, m. */
 const FADE = 0.7;
 /** Shadows lie so high over what they fall on, m. */
@@ -215,7 +216,10 @@ export class ContactShadows {
 
 function castsContactShadow(drawable: Drawable): boolean {
   const { min, max } = drawable.bounds;
-  return drawable.castsShadow && !drawable.bends && Math.max(max.x - min.x, max.z - min.z) < WIDEST;
+  const [width, depth] = [max.x - min.x, max.z - min.z];
+  const longest = Math.max(width, depth);
+  // A wall is thinner than a cell of its picture: its shadow would be a smear beyond its ends.
+  return drawable.castsShadow && !drawable.bends && longest < WIDEST && Math.min(width, depth) > longest / THINNEST;
 }
 
 function softSquare(): Uint8Array {

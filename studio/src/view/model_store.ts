@@ -7,6 +7,7 @@ import type { ModelSummary } from "../connection/messages";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 import { LoadQueue } from "./load_queue";
 import { farParts, mergeParts } from "./merge_parts";
+import { wholeLevels } from "./whole_levels";
 
 /** So many models are asked about, and loaded, at once: enough to keep network and decoder busy, few enough to stay in order. */
 const MOST_ASKED = 16;
@@ -56,7 +57,7 @@ export class ModelStore {
     gltf.scene.traverse((object) => object instanceof Mesh && meshes.push(object));
     const parts: DrawablePart[] = await Promise.all(
       meshes.map(async ({ geometry, material, matrixWorld }) => {
-        const levels = await this.levelsOf(gltf, geometry);
+        const levels = await this.levelsOf(gltf, geometry, matrixWorld.getMaxScaleOnAxis());
         return { geometry, material: [material].flat()[0]!, matrix: new Matrix4().copy(matrixWorld), ...(levels && { levels }) };
       }),
     );
@@ -68,9 +69,11 @@ export class ModelStore {
     return loaded;
   }
 
-  private async levelsOf(gltf: GLTF, geometry: BufferGeometry): Promise<(BufferAttribute | null)[] | undefined> {
+  private async levelsOf(gltf: GLTF, geometry: BufferGeometry, scale: number): Promise<(BufferAttribute | null)[] | undefined> {
     const told = toldLevels(geometry);
-    return told && Promise.all(told.map(({ indices }) => (indices === undefined ? null : (gltf.parser.getDependency("accessor", indices) as Promise<BufferAttribute>))));
+    if (!told) return undefined;
+    const levels = await Promise.all(told.map(({ indices }) => (indices === undefined ? null : (gltf.parser.getDependency("accessor", indices) as Promise<BufferAttribute>))));
+    return wholeLevels(geometry, levels, told.map(({ error }) => error), scale);
   }
 }
 

@@ -300,6 +300,7 @@ export class View {
     if (this.halted || this.hasSmoothEdges || this.renderer.xr.isPresenting) return;
     this.setFine(true);
     this.render();
+    this.afterFrame.emit();
   }
 
   /** Draws what advance() has brought up to date, at the present size. */
