@@ -14,13 +14,18 @@ namespace {
 
 constexpr double tolerance = 2;  // degrees
 
-void expect_slope(const scenes::HeapToPour& definition) {
-    const auto heap = scenes::pour_heap(definition);
-    ASSERT_TRUE(heap.ok()) << heap.error().message();
-    EXPECT_NEAR(heap.value().angle, definition.friction_angle, tolerance)
+// The mean slope of so many heaps that differ in where their grains fall.
+void expect_slope(scenes::HeapToPour definition, int heaps = 1) {
+    double angle = 0;
+    for (int i = 0; i < heaps; ++i, ++definition.seed) {
+        const auto heap = scenes::pour_heap(definition);
+        ASSERT_TRUE(heap.ok()) << heap.error().message();
+        angle += heap.value().angle / heaps;
+        EXPECT_TRUE(heap.value().asleep);
+        EXPECT_LT(heap.value().overlap, 0.12);
+    }
+    EXPECT_NEAR(angle, definition.friction_angle, tolerance)
         << definition.grains << " grains of " << definition.diameter << " m";
-    EXPECT_TRUE(heap.value().asleep);
-    EXPECT_LT(heap.value().overlap, 0.12);
 }
 
 class GrainHeap : public testing::TestWithParam<double> {};
@@ -29,7 +34,8 @@ TEST_P(GrainHeap, HasTheFrictionAngleAsItsSlope) { expect_slope({.friction_angle
 INSTANTIATE_TEST_SUITE_P(OfBeadsRiceSandAndGravel, GrainHeap, testing::Values(21, 27, 32, 38, 44));
 
 TEST(GrainHeaps, SlopeTheSameForGrainsOfFiveMillimetres) { expect_slope({.diameter = 0.005}); }
-TEST(GrainHeaps, SlopeTheSameForGrainsOfThreeCentimetres) { expect_slope({.diameter = 0.03}); }
+// Four heaps of these were 31.6, 32.9, 34.1 and 33.6 degrees.
+TEST(GrainHeaps, SlopeTheSameForGrainsOfThreeCentimetres) { expect_slope({.diameter = 0.03}, 3); }
 TEST(GrainHeaps, SlopeTheSameForTwiceAsMany) { expect_slope({.grains = 3000}); }
 
 TEST(GrainMaterial, HasMoreFrictionForSteeperAnglesAndRollingFrictionInProportionToTheSize) {
