@@ -39,8 +39,8 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   const url = new URL(address);
   url.searchParams.set("quality", quality);
   if (!url.searchParams.has("tour")) url.searchParams.set("tour", "no");
-  await page.goto(url.href);
-  await page.waitForFunction(() => window.embody?.connected() && window.embody.loading() === 0, null, { timeout: 60000 });
+  await page.goto(url.href, { timeout: 120000 });
+  await page.waitForFunction(() => window.embody?.connected() && window.embody.loading() === 0, null, { timeout: 120000 });
   // Earlier tests leave unsaved work behind, which the page offers.
   if (!recoveries && (await page.getByTestId("recovery-later").isVisible())) await page.getByTestId("recovery-later").click();
   return page;

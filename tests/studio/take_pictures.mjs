@@ -32,7 +32,7 @@ async function load(page, name, seconds = 0) {
   const scene = JSON.parse(readFileSync(join(root, "data", "scenes", `${name}.json`)));
   await commandFrom(page, "scene.load", { scene });
   await page.waitForFunction((title) => document.title.includes(title), scene.title);
-  await page.waitForFunction(() => window.embody.loading() === 0, null, { timeout: 120000 });
+  await page.waitForFunction(() => window.embody.loading() === 0, null, { timeout: 600000 });
   if (seconds > 0) await commandFrom(page, "simulation.step", { count: Math.round(60 * seconds) });
 }
 

@@ -88,6 +88,7 @@ export class Recording {
     for (const ending of this.endings.splice(0)) ending();
     clearTimeout(this.timer);
     await this.adding;
+    if (!this.isOld) this.idle = (performance.now() - this.taken) / 1000;
     await this.take();
     if (this.fault) throw this.fault;
     return this.writer.finish();
