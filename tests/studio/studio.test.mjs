@@ -125,7 +125,7 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     await row.locator(".field-error").waitFor();
     await field("mass").fill("12.5");
     await field("mass").press("Enter");
-    await row.getByText("manual").waitFor();
+    await row.getByLabel("manual").waitFor();
     assert.equal(await row.locator(".field-error").count(), 0);
     await page.getByTestId("reset-mass").click();
     await page.getByTestId("reset-mass").waitFor({ state: "hidden" });
