@@ -76,7 +76,7 @@ export class Headset {
 
   async enter(button = "enter-vr") {
     await this.page.getByTestId(button).click();
-    await this.page.waitForFunction(() => window.embody.vr.running(), null, { timeout: 20000 });
+    await this.page.waitForFunction(() => window.embody.vr.running(), null, { timeout: 120000 });
     await this.frames(4);
   }
 
@@ -88,7 +88,7 @@ export class Headset {
   /** Waits for so many more pictures. */
   async frames(count = 3) {
     const now = await this.page.evaluate(() => window.embody.frames());
-    await this.page.waitForFunction((until) => window.embody.frames() >= until, now + count, { timeout: 60000 });
+    await this.page.waitForFunction((until) => window.embody.frames() >= until, now + count, { timeout: 180000 });
   }
 
   stance() {
