@@ -124,15 +124,17 @@ class Trial:
             acknowledged, asked = [0, 0], [0, 0]
 
             def build(who: int):
-                viewer = Viewer(server.port)
+                viewer = None
                 try:
+                    viewer = Viewer(server.port)
                     viewer.do("hello", person=f"person {who}")
                     while True:
                         asked[who] += 1
                         viewer.do("entity.transform", poses=[{"index": 1 + who, "position": [0, asked[who], 0]}], merge=f"drag {who}")
                         acknowledged[who] = asked[who]
                 except (OSError, ConnectionError):
-                    viewer.close()
+                    if viewer:
+                        viewer.close()
 
             people = [threading.Thread(target=build, args=(who,)) for who in range(2)]
             for person in people:

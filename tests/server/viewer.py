@@ -63,7 +63,10 @@ class Viewer:
                              f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
         self.held = b""
         while b"\r\n\r\n" not in self.held:
-            self.held += self.socket.recv(4096)
+            more = self.socket.recv(4096)
+            if not more:
+                raise ConnectionError("the server has hung up")
+            self.held += more
         head, self.held = self.held.split(b"\r\n\r\n", 1)
         assert b" 101 " in head.split(b"\r\n", 1)[0], head
         self.commands = 0

@@ -18,8 +18,8 @@ constexpr std::size_t few_entities = 4;
 
 // Inserts, replaces or erases an item in a list that is ascending by its number.
 template <class Item, class Number>
-void put_item(std::vector<Item>& items, Number Item::*number, const std::optional<Item>& before,
-              const std::optional<Item>& after) {
+void put_item(std::vector<Item>& items, Number Item::*number, const HeapOptional<Item>& before,
+              const HeapOptional<Item>& after) {
     const Number key = before ? (*before).*number : (*after).*number;
     const auto place = std::lower_bound(items.begin(), items.end(), key,
                                         [number](const Item& item, Number wanted) { return item.*number < wanted; });
@@ -50,7 +50,7 @@ struct Applier {
     void operator()(const ActionChange& change) const {
         put_item(document.actions, &Action::id, change.before, change.after);
     }
-    void operator()(const HeadingChange& change) const { static_cast<Heading&>(document) = change.after; }
+    void operator()(const HeadingChange& change) const { static_cast<Heading&>(document) = *change.after; }
 };
 
 // Whether two changes of one thing can be one: both move it, or both change its fields.
@@ -72,7 +72,7 @@ bool comes_or_goes(const Change& change) {
 // Inserts and erases entities that come and go in a row, in one pass over the list: one by one, each would move all
 // entities behind it.
 void put_entities(std::vector<Entity>& entities, std::span<const Change> changes) {
-    std::map<EntityIndex, std::optional<Entity>> wanted;
+    std::map<EntityIndex, HeapOptional<Entity>> wanted;
     for (const Change& item : changes) {
         const auto& change = std::get<EntityChange>(item);
         wanted[change.after ? change.after->index : change.before->index] = change.after;
@@ -105,7 +105,54 @@ Entity without_geometry(const Entity& entity) {
     return out;
 }
 
+// What lies outside the objects themselves. Nodes and blocks of the heap are taken as a few pointers each.
+constexpr std::size_t block_bytes = 4 * sizeof(void*);
+
+template <class Item>
+std::size_t outside(const std::vector<Item>& items) {
+    return items.capacity() * sizeof(Item);
+}
+
+struct ShapeBytes {
+    std::size_t operator()(const physics::HullShape& hull) const { return outside(hull.points); }
+    std::size_t operator()(const physics::HeightfieldShape& field) const { return outside(field.heights); }
+    std::size_t operator()(const physics::MeshShape& mesh) const {
+        return outside(mesh.positions) + outside(mesh.triangles);
+    }
+    std::size_t operator()(const physics::CompoundShape& compound) const {
+        std::size_t bytes = outside(compound.children);
+        for (const physics::CompoundChild& child : compound.children) bytes += std::visit(*this, child.shape);
+        return bytes;
+    }
+    std::size_t operator()(const physics::WallShape& wall) const { return outside(wall.openings); }
+    std::size_t operator()(const auto& /*lengths*/) const { return 0; }
+};
+
+std::size_t outside(const Entity& entity) {
+    std::size_t bytes = entity.name.capacity() + entity.category.capacity() + entity.group.capacity();
+    for (const auto& item : entity.attributes) bytes += sizeof(item) + item.first.capacity() + block_bytes;
+    bytes += outside(entity.pins);
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry))
+        bytes += std::visit(ShapeBytes{}, *shape);
+    return bytes;
+}
+std::size_t outside(const auto& /*joint, action or heading: little*/) { return 0; }
+
 }  // namespace
+
+std::size_t bytes_of(const Change& change) {
+    const auto of_state = [](const auto& state) {
+        return state ? sizeof(*state) + block_bytes + outside(*state) : std::size_t{0};
+    };
+    return std::visit(
+        [&](const auto& item) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(item)>, PoseChange>)
+                return sizeof(Change);
+            else
+                return sizeof(Change) + of_state(item.before) + of_state(item.after);
+        },
+        change);
+}
 
 EntityChange change_of(const Entity& before, const Entity& after) {
     return {without_geometry(before), without_geometry(after), true};
@@ -266,6 +313,7 @@ bool History::merge(Edit& edit) {
         }
     }
     last->next_after = edit.next_after;
+    measure(*last);
     note(*last, false);
     last->mark = open->second = next_mark();
     note(*last, true);
@@ -274,8 +322,10 @@ bool History::merge(Edit& edit) {
 }
 
 void History::add(Edit edit) {
-    undone_[edit.person].clear();
+    drop_undone(edit.person);
     if (merge(edit)) return;
+    edit.bytes = 0;
+    measure(edit);
     edit.mark = next_mark();
     note(edit, true);
     edit.time = clock_;
@@ -284,12 +334,36 @@ void History::add(Edit edit) {
     done_.push_back(std::move(edit));
     const auto is_own = [person](const Edit& one) { return one.person == person; };
     if (std::count_if(done_.begin(), done_.end(), is_own) > static_cast<std::ptrdiff_t>(max_edits))
-        done_.erase(std::find_if(done_.begin(), done_.end(), is_own));
-    if (done_.size() > max_edits_of_all) done_.pop_front();
+        drop(std::find_if(done_.begin(), done_.end(), is_own));
+    while (done_.size() > 1 && (done_.size() > max_edits_of_all || bytes_ > max_bytes_)) drop(done_.begin());
+}
+
+void History::measure(Edit& edit) {
+    bytes_ -= edit.bytes;
+    edit.bytes = 0;
+    for (const Change& change : edit.changes) edit.bytes += bytes_of(change);
+    bytes_ += edit.bytes;
+}
+
+void History::put_changes(Edit& edit, std::vector<Change> changes) {
+    edit.changes = std::move(changes);
+    measure(edit);
+}
+
+void History::drop(std::deque<Edit>::iterator edit) {
+    bytes_ -= edit->bytes;
+    done_.erase(edit);
+}
+
+void History::drop_undone(PersonId person) {
+    const auto undone = undone_.find(person);
+    if (undone == undone_.end()) return;
+    for (const Edit& edit : undone->second) bytes_ -= edit.bytes;
+    undone_.erase(undone);
 }
 
 void History::forget(PersonId person) {
-    undone_.erase(person);
+    drop_undone(person);
     merging_.erase(person);
 }
 
@@ -297,7 +371,7 @@ void History::move_back(PersonId person, std::vector<Change> changes) {
     const auto edit = next_of(person);
     note(*edit, false);
     edit->time = clock_;
-    edit->changes = std::move(changes);
+    put_changes(*edit, std::move(changes));
     undone_[person].push_back(std::move(*edit));
     done_.erase(edit);
     merging_.erase(person);
@@ -307,7 +381,7 @@ void History::move_forward(PersonId person, std::vector<Change> changes) {
     std::vector<Edit>& undone = undone_[person];
     note(undone.back(), true);
     undone.back().time = clock_;
-    undone.back().changes = std::move(changes);
+    put_changes(undone.back(), std::move(changes));
     done_.push_back(std::move(undone.back()));
     undone.pop_back();
     merging_.erase(person);
@@ -318,14 +392,17 @@ void History::move_back(PersonId person, std::int64_t batch) {
     move_back(person, std::vector<Change>());
 }
 
-void History::drop_undoable(PersonId person) { done_.erase(next_of(person)); }
-void History::drop_redoable(PersonId person) { undone_[person].pop_back(); }
+void History::drop_undoable(PersonId person) { drop(next_of(person)); }
+void History::drop_redoable(PersonId person) {
+    bytes_ -= undone_[person].back().bytes;
+    undone_[person].pop_back();
+}
 
 void History::mark_saved() {
     saved_ = applied_;
     merging_.clear();
 }
 
-void History::clear() { *this = {}; }
+void History::clear() { *this = History(max_bytes_); }
 
 }  // namespace embody::scene

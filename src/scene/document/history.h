@@ -13,16 +13,18 @@
 #include <variant>
 #include <vector>
 
+#include "foundation/heap_optional.h"
 #include "scene/document/document.h"
 
 namespace embody::scene {
 
 // Changes of a document in a form that can be done and undone: the states before and after of everything they change.
+// A history keeps thousands of them, most of which are moves: larger states lie outside the variant.
 
 /// An entity comes (no `before`), goes (no `after`) or changes. An unchanged geometry is in neither state: a mesh of a
 /// thousand triangles is not copied with each move of a slider.
 struct EntityChange {
-    std::optional<Entity> before, after;
+    HeapOptional<Entity> before, after;
     bool same_geometry = false;
 };
 struct PoseChange {
@@ -30,13 +32,13 @@ struct PoseChange {
     Transform before, after;
 };
 struct JointChange {
-    std::optional<SceneJoint> before, after;
+    HeapOptional<SceneJoint> before, after;
 };
 struct ActionChange {
-    std::optional<Action> before, after;
+    HeapOptional<Action> before, after;
 };
 struct HeadingChange {
-    Heading before, after;
+    HeapOptional<Heading> before, after;  ///< always there
 };
 using Change = std::variant<EntityChange, PoseChange, JointChange, ActionChange, HeadingChange>;
 
@@ -61,6 +63,7 @@ struct Edit {
     std::uint64_t time = 0;  ///< given by the history: when it was done or undone
     /// When undo was refused, after the last act of somebody else; undo passes it until somebody acts again.
     std::uint64_t refused = 0;
+    std::size_t bytes = 0;  ///< given by the history: what its changes take
 };
 
 /// The thing that a change is about: an entity, a joint, an action or the heading (number 0).
@@ -81,10 +84,21 @@ std::vector<Change> reversed(const std::vector<Change>& changes);
 /// The change that reverts `change`.
 Change reversed(const Change& change);
 
-/// The edits that were done and those that were undone. Each person undoes and redoes their own.
+/// About what a change takes in memory.
+std::size_t bytes_of(const Change& change);
+
+/// The edits that were done and those that were undone. Each person undoes and redoes their own. The oldest go where
+/// there are too many of a person or of all, or where they take too much memory.
 class History {
 public:
+    static constexpr std::size_t usual_bytes = 256ull << 20;
+
+    explicit History(std::size_t max_bytes = usual_bytes) : max_bytes_(max_bytes) {}
+
+    /// The edit itself always stays, however large.
     void add(Edit edit);
+    /// What the changes of all edits take.
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
     /// The person's last edit that is not set aside, which undo would revert; null where there is none.
     [[nodiscard]] const Edit* undoable(PersonId person) const;
     [[nodiscard]] const Edit* redoable(PersonId person) const;
@@ -122,10 +136,16 @@ private:
     [[nodiscard]] std::uint64_t last_act_of_others(PersonId person) const;
     [[nodiscard]] std::uint64_t next_mark();
     void note(const Edit& edit, bool is_applied);
+    void put_changes(Edit& edit, std::vector<Change> changes);
+    void measure(Edit& edit);
+    void drop(std::deque<Edit>::iterator edit);
+    void drop_undone(PersonId person);
     [[nodiscard]] std::deque<Edit>::iterator last_of(PersonId person);
     /// undoable(), as a place in the list.
     [[nodiscard]] std::deque<Edit>::iterator next_of(PersonId person);
 
+    std::size_t max_bytes_;
+    std::size_t bytes_ = 0;  ///< of the edits in both lists
     std::deque<Edit> done_;
     std::map<PersonId, std::vector<Edit>> undone_;
     std::uint64_t marks_ = 0;                    ///< number given so far

@@ -123,7 +123,7 @@ private:
         for (const Pin& pin : change.after->pins)
             if (pin.to && !find(*pin.to)) return "what it was pinned to was deleted since";
         out.emplace_back(change);
-        entities_.insert_or_assign(change.after->index, change.after);
+        entities_.insert_or_assign(change.after->index, *change.after);
         return {};
     }
 
@@ -169,11 +169,11 @@ private:
     }
 
     Why take(const HeadingChange& change, std::vector<Change>& out) {
-        Heading merged = document_, before = change.before;
+        Heading merged = document_, before = *change.before;
         // Where a save has changed title or camera since, they stay.
-        if (merged.title != before.title) before.title = change.after.title;
-        if (!are_same(merged.camera, before.camera)) before.camera = change.after.camera;
-        if (const Why field = merge_fields(merged, before, change.after, false))
+        if (merged.title != before.title) before.title = change.after->title;
+        if (!are_same(merged.camera, before.camera)) before.camera = change.after->camera;
+        if (const Why field = merge_fields(merged, before, *change.after, false))
             return "its " + *field + " was changed since";
         out.emplace_back(HeadingChange{document_, merged});
         return {};

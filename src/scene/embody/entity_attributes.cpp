@@ -24,8 +24,8 @@ using attributes::PhysicalKind;
 
 namespace {
 
-/// Few sets of a document are different, unless each entity has its own numbers: then caching more has no use.
-constexpr std::size_t max_shared_sets = 4096;
+/// Sets that are kept though no entity holds them: few sets of a document are different, and each takes about 13 kB.
+constexpr std::size_t min_kept_sets = 1024;
 
 // The entity's own attributes, checked: a document that a program made was not checked by the file's reader.
 Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
@@ -204,10 +204,18 @@ Result<SharedAttributes> EntityAttributes::shared(const Entity& entity) {
     if (!made.ok()) return made.error();
     SharedAttributes set = std::make_shared<const AttributeSet>(std::move(made).value());
     if (!key.is_shared()) return set;
-    // Entities that hold a set keep it.
-    if (sets_.size() >= max_shared_sets) sets_.clear();
-    sets_.emplace(std::move(key), set);
+    keep(std::move(key), set);
     return set;
+}
+
+// Where a slider is dragged each edit makes a set that nobody holds after the next one. Twice what is held, so that the
+// walk costs each new set little.
+void EntityAttributes::keep(GeometryKey key, SharedAttributes set) {
+    if (sets_.size() >= std::max(max_kept_, min_kept_sets)) {
+        std::erase_if(sets_, [](const auto& item) { return item.second.use_count() == 1; });
+        max_kept_ = 2 * sets_.size();
+    }
+    sets_.emplace(std::move(key), std::move(set));
 }
 
 bool EntityAttributes::is_liquid(const Entity& entity) {

@@ -37,10 +37,14 @@ public:
     /// Whether its kind is fluid; false where the model is unknown.
     bool is_liquid(const Entity& entity);
 
+    /// Sets that are kept for entities to come: those that entities hold, and a few more.
+    [[nodiscard]] std::size_t kept() const { return sets_.size(); }
+
     /// Call when a model has changed: shared sets may be out of date.
     void forget_shared() { sets_.clear(); }
 
 private:
+    void keep(GeometryKey key, SharedAttributes set);
     [[nodiscard]] attributes::AttributeSet override_by(const attributes::AttributeSet& automatic,
                                                        const std::vector<attributes::AttributeEntry>& own,
                                                        const attributes::ModelFacts& facts) const;
@@ -55,6 +59,7 @@ private:
     KnownModels& models_;
     PrimitiveFacts primitives_;
     std::map<GeometryKey, SharedAttributes> sets_;  ///< by everything that they follow from
+    std::size_t max_kept_ = 0;                      ///< where the sets are as many, those that nobody holds go
 };
 
 /// What decides in a scene with these settings whether an entity's values make sense.

@@ -66,6 +66,7 @@ const ModelFacts& PrimitiveFacts::of(const physics::ShapeDefinition& shape) {
     if (!key.is_shared()) return last_ = primitive_facts(shape);
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
+    if (known_.size() >= max_known) known_.clear();
     return known_.emplace(std::move(key), primitive_facts(shape)).first->second;
 }
 

@@ -19,9 +19,13 @@ physics::ShapeDefinition hull_of(const physics::MeshShape& mesh);
 /// The same facts, computed once for each primitive. A returned reference is valid until the next call.
 class PrimitiveFacts {
 public:
+    /// Kept at most: a size that is dragged makes a new primitive with each edit.
+    static constexpr std::size_t max_known = 1024;
+
     const attributes::ModelFacts& of(const physics::ShapeDefinition& shape);
     /// Facts of a mesh that moves, with its enclosed volume.
     const attributes::ModelFacts& of_enclosed(const physics::MeshShape& mesh);
+    [[nodiscard]] std::size_t known() const { return known_.size(); }
 
 private:
     std::map<GeometryKey, attributes::ModelFacts> known_;

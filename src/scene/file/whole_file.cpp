@@ -11,6 +11,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace embody::scene {
@@ -99,7 +100,7 @@ void remove_if_abandoned(const fs::path& draft) {
 
 }  // namespace
 
-Result<void> write_whole_file(const fs::path& file, std::string_view text) {
+Result<WholeFileDraft> WholeFileDraft::write(const fs::path& file, std::string_view text, bool is_synced) {
     std::error_code problem;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     fs::create_directories(folder, problem);
@@ -111,20 +112,45 @@ Result<void> write_whole_file(const fs::path& file, std::string_view text) {
     const auto found_mode = mode_of(file);
     if (!found_mode) return found_mode.error();
     const std::optional<mode_t> kept_mode = *found_mode;
-    const std::optional<Draft> draft = open_draft(file, kept_mode ? 0600 : 0666);
-    if (!draft) return can_not_write(file);
-    const int out = draft->out.number;
-    const bool written = write_all(out, text) && (!kept_mode || fchmod(out, *kept_mode) == 0) && fsync(out) == 0 &&
-                         rename(draft->name.c_str(), file.c_str()) == 0;
-    if (!written) {
-        const Error error = can_not_write(file);
-        unlink(draft->name.c_str());
-        return error;
-    }
+    std::optional<Draft> opened = open_draft(file, kept_mode ? 0600 : 0666);
+    if (!opened) return can_not_write(file);
+    WholeFileDraft draft;
+    draft.file_ = file;
+    draft.name_ = std::move(opened->name);
+    draft.descriptor_ = std::exchange(opened->out.number, -1);
+    const int out = draft.descriptor_;
+    if (!write_all(out, text) || (kept_mode && fchmod(out, *kept_mode) != 0) || (is_synced && fsync(out) != 0))
+        return can_not_write(file);
+    return draft;
+}
 
-    // The rename changes the folder, which is synced as well.
+WholeFileDraft::WholeFileDraft(WholeFileDraft&& other) noexcept
+    : file_(std::move(other.file_)),
+      name_(std::exchange(other.name_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+WholeFileDraft::~WholeFileDraft() {
+    if (!name_.empty()) unlink(name_.c_str());
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
+Result<void> WholeFileDraft::put_in_place(std::string_view more) {
+    if (!write_all(descriptor_, more) || rename(name_.c_str(), file_.c_str()) != 0) return can_not_write(file_);
+    name_.clear();
+    return {};
+}
+
+void sync_folder(const fs::path& folder) {
     const Descriptor entry(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (entry.number >= 0) fsync(entry.number);
+}
+
+Result<void> write_whole_file(const fs::path& file, std::string_view text) {
+    Result<WholeFileDraft> draft = WholeFileDraft::write(file, text);
+    if (!draft.ok()) return draft.error();
+    if (Result<void> placed = draft.value().put_in_place(); !placed.ok()) return placed;
+    // The rename changes the folder, which is synced as well.
+    sync_folder(file.has_parent_path() ? file.parent_path() : ".");
     return {};
 }
 

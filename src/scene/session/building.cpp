@@ -132,7 +132,7 @@ void Completion::note(const Change& change) {
         if (after) after->pose = pose->after;
     } else if (const auto* entity = std::get_if<EntityChange>(&change)) {
         index = entity->before ? entity->before->index : entity->after->index;
-        after = entity->after;
+        if (entity->after) after = *entity->after;
         if (after && entity->same_geometry) after->geometry = find(index)->geometry;
     } else {
         return;

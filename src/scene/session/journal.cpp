@@ -16,6 +16,7 @@
 #include <optional>
 #include <random>
 #include <string_view>
+#include <utility>
 
 #include "foundation/state_hash.h"
 #include "scene/document/history.h"
@@ -153,7 +154,8 @@ Result<std::unique_ptr<Journal>> Journal::begin(const fs::path& folder, const st
     journal->scene_ = scene;
     journal->started_ = utc_text(std::chrono::system_clock::now());
     journal->file_ = free_file(folder, scene.empty() ? document.title : scene, journal->started_);
-    if (Result<void> written = journal->write_anew(document); !written.ok()) return written.error();
+    // Nothing is lost by a power cut before the first sync but the last second.
+    if (Result<void> written = journal->write_anew(document, false); !written.ok()) return written.error();
     journal->syncing_ = std::thread([&self = *journal] { self.sync_each_second(); });
     return journal;
 }
@@ -168,57 +170,114 @@ Journal::~Journal() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-// The head and the whole document, in place of what was there.
-Result<void> Journal::write_anew(const Document& document) {
+// The head and the whole document.
+std::string Journal::whole_text(const Document& document) const {
     const json head = {{"embody_journal", format_version},
                        {"scene", scene_},
                        {"title", document.title},
                        {"started", started_},
                        {"edits", edits_}};
-    const std::string text = line_of(head) + line_of({{"document", document_to_json(document)}});
-    if (Result<void> written = write_whole_file(file_, text); !written.ok()) return written;
+    return line_of(head) + line_of({{"document", document_to_json(document)}});
+}
+
+// Goes on in the file as it is in its folder now. The caller has locked the mutex.
+bool Journal::take_file(std::size_t whole_size, std::size_t lines_size) {
     const int opened = open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (opened < 0) return can_not_write(file_);
+    if (opened < 0) return false;
     // A file system without locks: another program may offer the journal as a recovery while this one runs.
     (void)flock(opened, LOCK_EX | LOCK_NB);
-    const std::lock_guard lock(mutex_);
     if (descriptor_ >= 0) close(descriptor_);
     descriptor_ = opened;
-    whole_size_ = text.size();
-    lines_size_ = 0;
-    is_torn_ = is_dirty_ = false;
+    whole_size_ = whole_size;
+    lines_size_ = lines_size;
+    is_torn_ = false;
+    is_dirty_ = folder_is_dirty_ = true;
+    return true;
+}
+
+// In place of what was there.
+Result<void> Journal::write_anew(const Document& document, bool is_synced) {
+    {
+        const std::lock_guard lock(mutex_);
+        ++renewals_;
+        whole_.reset();
+        is_renewed_ = false;
+    }
+    const std::string text = whole_text(document);
+    {
+        Result<WholeFileDraft> draft = WholeFileDraft::write(file_, text, is_synced);
+        if (!draft.ok()) return draft.error();
+        if (Result<void> placed = draft.value().put_in_place(); !placed.ok()) return placed;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        if (!take_file(text.size(), 0)) return can_not_write(file_);
+    }
+    changed_.notify_all();
     return {};
 }
 
 Result<void> Journal::add(const json& changes, const Document& document) {
     ++edits_;
-    // Behind a line that was written in part no other could be read.
-    if (is_torn_ || lines_size_ > std::max(whole_size_, min_lines_size)) return write_anew(document);
     const std::string line = line_of({{"changes", changes}, {"next_index", document.next_index}});
+    std::unique_lock lock(mutex_);
+    if (is_torn_) {
+        // Behind a line that was written in part no other could be read.
+        lock.unlock();
+        return write_anew(document, true);
+    }
     is_torn_ = !write_all(descriptor_, line);
     if (is_torn_) return can_not_write(file_);
     lines_size_ += line.size();
-    {
-        const std::lock_guard lock(mutex_);
-        is_dirty_ = true;
+    is_dirty_ = true;
+    if (is_renewed_) {
+        lines_since_ += line;
+    } else if (lines_size_ > std::max(whole_size_, min_lines_size)) {
+        whole_ = whole_text(document);
+        is_renewed_ = true;
+        lines_since_.clear();
+        ++renewals_;
     }
+    lock.unlock();
     changed_.notify_all();
     return {};
+}
+
+// Writes the document anew, for which no edit waits: what is edited meanwhile goes into the file that is there, and
+// then behind the document.
+void Journal::renew(std::unique_lock<std::mutex>& lock) {
+    const std::string text = std::move(*whole_);
+    whole_.reset();
+    const std::uint64_t number = renewals_;
+    lock.unlock();
+    {
+        Result<WholeFileDraft> draft = WholeFileDraft::write(file_, text);
+        lock.lock();
+        if (number != renewals_ || ends_) return;
+        is_renewed_ = false;
+        // Where that fails the file that is there goes on.
+        if (!draft.ok() || !draft.value().put_in_place(lines_since_).ok()) return;
+    }
+    if (!take_file(text.size(), lines_since_.size())) is_torn_ = true;
+    lines_since_ = {};
 }
 
 // Syncing takes milliseconds to seconds, for which no edit waits.
 void Journal::sync_each_second() {
     std::unique_lock lock(mutex_);
     for (;;) {
-        changed_.wait(lock, [this] { return ends_ || is_dirty_; });
+        changed_.wait(lock, [this] { return ends_ || is_dirty_ || whole_; });
+        if (whole_ && !ends_) renew(lock);
         if (is_dirty_) {
             is_dirty_ = false;
+            const bool has_new_file = std::exchange(folder_is_dirty_, false);
             const int copy = dup(descriptor_);
             lock.unlock();
             if (copy >= 0) {
                 (void)fdatasync(copy);
                 close(copy);
             }
+            if (has_new_file) sync_folder(file_.parent_path());
             lock.lock();
         }
         if (changed_.wait_for(lock, sync_period, [this] { return ends_; })) return;
@@ -226,6 +285,9 @@ void Journal::sync_each_second() {
 }
 
 void Journal::remove() {
+    const std::lock_guard lock(mutex_);
+    ++renewals_;
+    whole_.reset();
     std::error_code ignored;
     fs::remove(file_, ignored);
 }

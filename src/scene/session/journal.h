@@ -3,10 +3,12 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,20 +39,27 @@ public:
 
 private:
     Journal() = default;
-    Result<void> write_anew(const Document& document);
+    [[nodiscard]] std::string whole_text(const Document& document) const;
+    Result<void> write_anew(const Document& document, bool is_synced);
+    bool take_file(std::size_t whole_size, std::size_t lines_size);
+    void renew(std::unique_lock<std::mutex>& lock);
     void sync_each_second();
 
     std::filesystem::path file_;
     std::string scene_, started_;
-    int descriptor_ = -1;         ///< locked
-    std::size_t whole_size_ = 0;  ///< bytes of the document as it was written last
-    std::size_t lines_size_ = 0;  ///< bytes of the edits behind it
-    std::size_t edits_ = 1;       ///< with that which began the journal
-    bool is_torn_ = false;        ///< the last line was written in part
+    std::size_t edits_ = 1;  ///< with that which began the journal
 
-    std::mutex mutex_;  ///< guards what follows, and the descriptor against the syncing thread
+    std::mutex mutex_;  ///< guards what follows
     std::condition_variable changed_;
-    bool is_dirty_ = false, ends_ = false;
+    int descriptor_ = -1;               ///< locked
+    std::size_t whole_size_ = 0;        ///< bytes of the document as it was written last
+    std::size_t lines_size_ = 0;        ///< bytes of the edits behind it
+    bool is_torn_ = false;              ///< the last line was written in part
+    std::optional<std::string> whole_;  ///< for the thread to write anew
+    bool is_renewed_ = false;           ///< the thread has that in hand, or will
+    std::uint64_t renewals_ = 0;        ///< another number: what it has in hand is not wanted any more
+    std::string lines_since_;           ///< edits that `whole_` does not have in it
+    bool is_dirty_ = false, folder_is_dirty_ = false, ends_ = false;
     std::thread syncing_;
 };
 

@@ -113,7 +113,7 @@ Result<void> SessionState::sync_entity(const EntityChange& change) {
 }
 
 Result<void> SessionState::sync_heading(const HeadingChange& change) {
-    return simulation->set_settings(change.after.settings);
+    return simulation->set_settings(change.after->settings);
 }
 
 Result<void> SessionState::sync(const Change& change) {

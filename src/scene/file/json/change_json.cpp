@@ -78,15 +78,15 @@ Result<Change> read_heading(const json& change, const std::string& where, const 
     HeadingChange heading{document, document};
     // Null: the scene has none.
     if (fields.is_object() && fields.contains("camera") && fields["camera"].is_null()) {
-        heading.after.camera.reset();
+        heading.after->camera.reset();
         fields.erase("camera");
     }
     FieldReader reader(fields, where + ".settings", error);
     for_each_field<Heading>([&](const auto& field) {
         if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, physics::WorldSettings>)
-            read_field(reader, field, heading.after);
+            read_field(reader, field, *heading.after);
     });
-    read_fields(reader, heading.after.settings);
+    read_fields(reader, heading.after->settings);
     if (!reader.finish()) return *error;
     return Change(std::move(heading));
 }

@@ -194,11 +194,11 @@ Result<json> settings(SessionState& state, const json& params) {
     HeadingChange change{state.document, state.document};
     for_each_field<Heading>([&](const auto& field) {
         if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, physics::WorldSettings>)
-            read_field(reader, field, change.after);
+            read_field(reader, field, *change.after);
     });
-    read_fields(reader, change.after.settings);
+    read_fields(reader, change.after->settings);
     reader.text("merge", edit.merge);
-    if (reader.finish()) check_value(reader, change.after.settings);
+    if (reader.finish()) check_value(reader, change.after->settings);
     if (error) return *error;
     edit.changes.emplace_back(std::move(change));
     return done(state.commit(std::move(edit)));
