@@ -30,11 +30,11 @@ void expect_slope(scenes::HeapToPour definition, int heaps = 1) {
 
 class GrainHeap : public testing::TestWithParam<double> {};
 
-TEST_P(GrainHeap, HasTheFrictionAngleAsItsSlope) { expect_slope({.friction_angle = GetParam()}); }
+TEST_P(GrainHeap, HasTheFrictionAngleAsItsSlope) { expect_slope({.friction_angle = GetParam()}, 2); }
 INSTANTIATE_TEST_SUITE_P(OfBeadsRiceSandAndGravel, GrainHeap, testing::Values(21, 27, 32, 38, 44));
 
-TEST(GrainHeaps, SlopeTheSameForGrainsOfFiveMillimetres) { expect_slope({.diameter = 0.005}); }
-// Four heaps of these were 31.6, 32.9, 34.1 and 33.6 degrees.
+// Heaps of one kind scatter by one degree; six of these are 30.7 to 33.5, in the mean 32.4.
+TEST(GrainHeaps, SlopeTheSameForGrainsOfFiveMillimetres) { expect_slope({.diameter = 0.005}, 6); }
 TEST(GrainHeaps, SlopeTheSameForGrainsOfThreeCentimetres) { expect_slope({.diameter = 0.03}, 3); }
 TEST(GrainHeaps, SlopeTheSameForTwiceAsMany) { expect_slope({.grains = 3000}); }
 

@@ -287,9 +287,11 @@ EMBODY_WIDE_INLINE void solve_rolling(float* batch, int points, const Frame& f, 
     Wide3 now = old - stop * spin;
     now = now - f.normal * dot(now, f.normal);
     const Wide size = square_root(dot(now, now));
-    now = now * select(size > limit, limit / select(size > zero, size, one), one);
-    store_3(batch + BatchHead::rolling * lanes, now);
+    // A contact without load keeps nothing, also of what is so small that its square is 0: such a lane is left alone
+    // where the whole batch is idle, and must come to the same where it is not.
     const Wide3 none{zero, zero, zero};
+    now = select(limit > zero, now * select(size > limit, limit / select(size > zero, size, one), one), none);
+    store_3(batch + BatchHead::rolling * lanes, now);
     apply(v, m, f.arm_a, f.arm_b, none, now - old);
 }
 
