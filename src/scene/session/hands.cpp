@@ -20,6 +20,8 @@ constexpr double touch_strength = 400;  // N, as a hand that holds something
 /// A weaker touch is not told, N s: that of 1 g at 1 m/s is hardly felt.
 constexpr double felt_impulse = 1e-3;
 
+double now(const Simulation& simulation) { return simulation.world().last_report().time; }
+
 }  // namespace
 
 Hands::Hand* Hands::find(const HandName& hand) {
@@ -55,8 +57,8 @@ Result<void> Hands::grab(Simulation& simulation, const HandName& hand, EntityInd
     held.entity = entity;
     held.grab.body = body.value();
     held.grab.local_point = inverse_transform_point(simulation.world().pose(body.value()), point);
-    held.grab.target = point;
     held.grab.strength = strength;
+    held.path.report(now(simulation), point, {});
     taken.value()->held = std::move(held);
     return {};
 }
@@ -67,12 +69,14 @@ Result<void> Hands::move(Simulation& simulation, const HandName& hand, const Han
         return Error{"hand", "\"" + hand.name + "\" holds nothing: nothing is held, or it was removed",
                      "simulation.grab first"};
     Held& held = *found->held;
-    held.grab.target = place.position;
-    if (!place.rotation) return {};
-    if (!held.hand_rotation)
-        held.offset = conjugate(*place.rotation) * simulation.world().pose(held.grab.body).rotation;
-    held.hand_rotation = place.rotation;
-    held.grab.rotation = normalized(*place.rotation * held.offset);
+    if (place.rotation) {
+        if (!held.hand_rotation) {
+            held.offset = conjugate(*place.rotation) * simulation.world().pose(held.grab.body).rotation;
+            held.path = {};  // how it turned until now is not known
+        }
+        held.hand_rotation = place.rotation;
+    }
+    held.path.report(now(simulation), place.position, held.hand_rotation.value_or(Quat{}));
     return {};
 }
 
@@ -97,8 +101,9 @@ Result<void> Hands::touch(Simulation& simulation, const HandName& hand, const Ba
     std::optional<Touching>& touching = taken.value()->touching;
     if (!touching) touching.emplace();
     // A ball of another size is made anew.
-    if (touching->ball.radius != ball.radius) simulation.remove_hand(std::exchange(touching->body, {}));
-    touching->ball = ball;
+    if (touching->radius != ball.radius) simulation.remove_hand(std::exchange(touching->body, {}));
+    touching->radius = ball.radius;
+    touching->path.report(now(simulation), ball.place.position, ball.place.rotation.value_or(Quat{}));
     return {};
 }
 
@@ -120,8 +125,8 @@ void Hands::forget(Simulation& simulation, std::uint64_t client) {
 
 void Hands::rest() {
     for (auto& [name, hand] : hands_) {
-        if (hand.held) hand.held->path.clear();
-        if (hand.touching) hand.touching->path.clear();
+        if (hand.held) hand.held->path.rest();
+        if (hand.touching) hand.touching->path.rest();
     }
 }
 
@@ -140,14 +145,15 @@ int Hands::hands_at(BodyHandle body) const {
 void Hands::before_step(Simulation& simulation) {
     if (hands_.empty()) return;
     forget_gone(simulation);
-    const double time = simulation.world().last_report().time;
     for (auto& [name, hand] : hands_) {
         if (hand.touching) steer(simulation, hand);
         if (!hand.held) continue;
         Held& held = *hand.held;
-        held.path.add(time, held.grab.target, held.hand_rotation.value_or(Quat{}));
-        held.grab.velocity = held.path.velocity();
-        held.grab.spin = held.path.angular_velocity();
+        const HandPath::Motion motion = held.path.at(now(simulation));
+        held.grab.target = motion.position;
+        if (held.hand_rotation) held.grab.rotation = normalized(motion.rotation * held.offset);
+        held.grab.velocity = motion.velocity;
+        held.grab.spin = motion.spin;
         pull(simulation.world(), held.grab, hands_at(held.grab.body));
     }
 }
@@ -156,32 +162,32 @@ void Hands::before_step(Simulation& simulation) {
 // it meets. A kinematic ball would be infinitely strong, and its impulses on cloth and liquids are not known in time.
 void Hands::steer(Simulation& simulation, Hand& hand) {
     Touching& touching = *hand.touching;
-    const Vec3 target = touching.ball.place.position;
-    const Quat rotation = touching.ball.place.rotation.value_or(Quat{});
     physics::World& world = simulation.world();
-    touching.path.add(world.last_report().time, target, rotation);
-    if (hand.left != 0 && !hand.held && !simulation.is_touched(hand.left, target, touching.ball.radius)) hand.left = 0;
+    HandPath::Motion motion = touching.path.at(now(simulation));
+    const Vec3 target = motion.position;
+    if (hand.left != 0 && !hand.held && !simulation.is_touched(hand.left, target, touching.radius)) hand.left = 0;
     if (hand.held || hand.left != 0) {
         simulation.remove_hand(std::exchange(touching.body, {}));
         return;
     }
     if (!world.contains(touching.body)) {
-        const Result<BodyHandle> ball = simulation.add_hand(target, touching.ball.radius);
+        const Result<BodyHandle> ball = simulation.add_hand(target, touching.radius);
         if (!ball.ok()) return;
         touching.body = ball.value();
     } else if (length(world.pose(touching.body).position - target) > max_lag) {
         // The numbers are finite and the body is there: the world does not refuse.
-        (void)world.set_pose(touching.body, {target, rotation}).ok();
+        (void)world.set_pose(touching.body, {target, motion.rotation}).ok();
         (void)world.set_velocity(touching.body, {}, {}).ok();
-        touching.path.clear();
+        touching.path.rest();
+        motion.velocity = motion.spin = {};
     }
     pull(world,
          {.body = touching.body,
           .local_point = {},
           .target = target,
-          .rotation = rotation,
-          .velocity = touching.path.velocity(),
-          .spin = touching.path.angular_velocity(),
+          .rotation = motion.rotation,
+          .velocity = motion.velocity,
+          .spin = motion.spin,
           .strength = touch_strength,
           .closing_speed = touch_speed,
           .frequency = touch_frequency},
@@ -199,7 +205,6 @@ std::vector<Strike> Hands::after_step(const Simulation& simulation) {
     const auto is_hand = [&](BodyHandle body) { return std::ranges::find(bodies, body) != bodies.end(); };
     const std::vector<Impact> impacts = new_impacts(
         simulation, [&](const physics::ContactEvent& event) { return is_hand(event.a) || is_hand(event.b); });
-    const double time = simulation.world().last_report().time;
     for (auto& [name, hand] : hands_) {
         const BodyHandle body = body_of(hand);
         for (const Impact& impact : impacts) {
@@ -208,7 +213,7 @@ std::vector<Strike> Hands::after_step(const Simulation& simulation) {
             const EntityIndex other = simulation.entity(impact.a == body ? impact.b : impact.a);
             hand.strike = Strike{name, hand.held ? hand.held->entity : 0, other, impact.position, impact.impulse};
         }
-        if (!hand.strike || !hand.pace.is_due(time)) continue;
+        if (!hand.strike || !hand.pace.is_due(now(simulation))) continue;
         told.push_back(*hand.strike);
         hand.strike.reset();
     }

@@ -71,11 +71,11 @@ private:
         EntityIndex entity = 0;
         Grab grab;
         HandPath path;
-        std::optional<Quat> hand_rotation;  ///< as it was told last
+        std::optional<Quat> hand_rotation;  ///< as it was told last; empty: the hand does not turn it
         Quat offset;                        ///< of the body's rotation from the hand's
     };
     struct Touching {
-        Ball ball;
+        double radius = 0;  ///< of the ball, m
         HandPath path;
         physics::BodyHandle body;  ///< null while it is away
     };

@@ -25,7 +25,8 @@ namespace embody::scene {
 namespace {
 
 constexpr double path_time = 0.05;     // s, over which a hand's velocity is measured: some reports of a tracker
-constexpr double max_jump = 1;         // m in a step: beyond, the hand was put elsewhere
+constexpr double max_silence = 0.25;   // s: of reports further apart nobody knows what was between them
+constexpr double max_jump = 1;         // m between reports: beyond, the hand was put elsewhere
 constexpr double max_hand_speed = 20;  // m/s: of a fast throw; faster is an error of the tracker
 constexpr double max_hand_spin = 40;   // rad/s: of a quick turn of the wrist
 constexpr double closing_spin = 15;    // rad/s, at which something far from its target rotation turns there at most
@@ -100,25 +101,33 @@ Vec3 turning_torque(const Held& held, Vec3 wanted, Vec3 wanted_spin, double max_
 
 }  // namespace
 
-void HandPath::add(double time, Vec3 position, Quat rotation) {
-    if (!samples_.empty() && length(position - samples_.back().position) > max_jump) samples_.clear();
+void HandPath::report(double time, Vec3 position, Quat rotation) {
+    if (!samples_.empty() && samples_.back().time >= time) samples_.pop_back();
+    if (!samples_.empty() &&
+        (length(position - samples_.back().position) > max_jump || time - samples_.back().time > max_silence))
+        samples_.clear();
     samples_.push_back({time, position, rotation});
     while (samples_.size() > 2 && samples_.front().time < time - path_time * (1 + 1e-9)) samples_.pop_front();
 }
 
-Vec3 HandPath::velocity() const {
-    if (samples_.size() < 2) return {};
-    const double passed = samples_.back().time - samples_.front().time;
-    if (!(passed > 0)) return {};
-    return limited((samples_.back().position - samples_.front().position) / passed, max_hand_speed);
+void HandPath::rest() {
+    while (samples_.size() > 1) samples_.pop_front();
 }
 
-Vec3 HandPath::angular_velocity() const {
-    if (samples_.size() < 2) return {};
-    const double passed = samples_.back().time - samples_.front().time;
-    if (!(passed > 0)) return {};
-    const Vec3 turned = rotation_vector(samples_.back().rotation * conjugate(samples_.front().rotation));
-    return limited(turned / passed, max_hand_spin);
+HandPath::Motion HandPath::at(double time) const {
+    const Sample &first = samples_.front(), &last = samples_.back();
+    if (samples_.size() < 2) return {last.position, last.rotation, {}, {}};
+
+    // A report that is late by as much again as they are apart does not come: the hand stands.
+    double gap = 0;
+    for (std::size_t i = 1; i < samples_.size(); ++i) gap = std::max(gap, samples_[i].time - samples_[i - 1].time);
+    const double ahead = time - last.time, measured = last.time - first.time;
+    if (ahead > std::min(2 * gap, max_silence) + 1e-9) return {last.position, last.rotation, {}, {}};
+
+    const Vec3 velocity = limited((last.position - first.position) / measured, max_hand_speed);
+    const Vec3 spin = limited(rotation_vector(last.rotation * conjugate(first.rotation)) / measured, max_hand_spin);
+    const Quat turned = from_axis_angle(normalized(spin, {1, 0, 0}), length(spin) * ahead);
+    return {last.position + velocity * ahead, normalized(turned * last.rotation), velocity, spin};
 }
 
 void pull(physics::World& world, const Grab& grab, int hands_at_body) {

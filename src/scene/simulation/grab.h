@@ -10,15 +10,23 @@
 
 namespace embody::scene {
 
-/// Where a hand was in the last moments, in simulated time.
+/// Where a hand was told to be in the last moments, in simulated time, and where it is between two reports.
 class HandPath {
 public:
-    /// Once a step. A jump of more than a metre is no motion: the path begins anew there, at rest.
-    void add(double time, Vec3 position, Quat rotation);
-    /// Forgets the past: the hand is at rest where it is told next.
-    void clear() { samples_.clear(); }
-    [[nodiscard]] Vec3 velocity() const;          ///< mean of the last 50 ms, m/s
-    [[nodiscard]] Vec3 angular_velocity() const;  ///< the same, rad/s, world axes
+    struct Motion {
+        Vec3 position;
+        Quat rotation;
+        Vec3 velocity;  ///< mean of the last 50 ms, or of the last two reports where these are further apart, m/s
+        Vec3 spin;      ///< the same, rad/s, world axes
+    };
+    /// The hand is there at this time (s). Of two reports at one time the later counts. After a jump of more than a
+    /// metre, or a quarter of a second without a report, the path begins anew: the hand is at rest there.
+    void report(double time, Vec3 position, Quat rotation);
+    /// The hand is at rest where it was told last, and may be told elsewhere at the same time.
+    void rest();
+    /// It goes on as it moved until the next report is overdue, and is then at rest where it was told last. Not before
+    /// the last report; needs one.
+    [[nodiscard]] Motion at(double time) const;
 
 private:
     struct Sample {

@@ -6,6 +6,7 @@ import type { Hit } from "../view/view";
 import type { Gizmo, Tool } from "./gizmo";
 import { isLocked, unlocked } from "./locks";
 import { PoseDrag } from "./poses";
+import { Pull } from "./pull";
 import { SpringLine } from "./spring_line";
 import { SurfaceDrag } from "./surface_drag";
 import { turnByWheel } from "./arrange_actions";
@@ -19,7 +20,7 @@ type Gesture =
   | { kind: "orbit" | "pan" | "look" }
   | { kind: "press"; hit: Hit | null }
   | { kind: "box"; frame: HTMLElement }
-  | { kind: "grab"; plane: Plane; sending: boolean; newer: Vector3 | null }
+  | { kind: "grab"; plane: Plane; pull: Pull }
   | { kind: "carry"; drag: SurfaceDrag }
   | { kind: "slide"; plane: Plane; from: Vector3; drag: PoseDrag };
 
@@ -95,7 +96,7 @@ export class Pointer {
     if (gesture.kind === "orbit" && !view.rig.isPlan) view.rig.orbit(dx, dy);
     else if (gesture.kind === "pan" || (turns && view.rig.isPlan)) view.rig.pan(dx, dy, view.canvas.clientHeight);
     else if (gesture.kind === "look") view.rig.look(dx, dy);
-    else if (gesture.kind === "grab") this.pull(event);
+    else if (gesture.kind === "grab") this.pull(gesture, event);
     else if (gesture.kind === "slide") this.slide(gesture, event);
     else if (gesture.kind === "carry") gesture.drag.moveTo(event.clientX, event.clientY, !event.shiftKey);
     else if (gesture.kind === "box") this.stretchBox(gesture.frame, event);
@@ -137,29 +138,18 @@ export class Pointer {
   private beginGrab(hit: Hit): void {
     const facing = this.parts.view.rig.camera.getWorldDirection(new Vector3()).negate();
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, hit.point);
-    const point = hit.point.toArray();
-    this.gesture = { kind: "grab", plane, sending: false, newer: null };
+    const pull = new Pull(this.parts, { index: hit.index, point: hit.point, hand: "mouse", strength: this.parts.preferences.get("pull") });
+    this.gesture = { kind: "grab", plane, pull };
     this.spring.begin(hit.index, hit.point);
     this.grabbed.emit();
-    void this.parts.server.command("simulation.grab", { index: hit.index, point, target: point, strength: this.parts.preferences.get("pull") });
   }
 
-  private pull(event: PointerEvent): void {
-    const gesture = this.gesture;
-    if (gesture?.kind !== "grab") return;
-    gesture.newer = this.parts.view.meet(event.clientX, event.clientY, gesture.plane);
-    if (gesture.newer) this.spring.pullTo(gesture.newer);
-    if (!gesture.sending) void this.sendPull(gesture);
-  }
-
-  private async sendPull(gesture: Extract<Gesture, { kind: "grab" }>): Promise<void> {
-    gesture.sending = true;
-    while (gesture.newer && this.gesture === gesture) {
-      const target = gesture.newer.toArray();
-      gesture.newer = null;
-      await this.parts.server.command("simulation.move_grab", { target });
-    }
-    gesture.sending = false;
+  private pull({ plane, pull }: Extract<Gesture, { kind: "grab" }>, event: PointerEvent): void {
+    const target = this.parts.view.meet(event.clientX, event.clientY, plane);
+    if (!target) return;
+    this.spring.pullTo(target);
+    pull.target.copy(target);
+    pull.follow();
   }
 
   /** Drags the entity under the pointer in the plane of the surface point that was pressed. */
@@ -196,7 +186,7 @@ export class Pointer {
   private finish(gesture: Gesture | null): void {
     if (gesture?.kind === "grab") {
       this.spring.end();
-      void this.parts.server.command("simulation.release", {});
+      gesture.pull.release();
     } else if (gesture?.kind === "slide") void gesture.drag.end();
     else if (gesture?.kind === "box") gesture.frame.remove();
     else if (gesture?.kind === "carry") {

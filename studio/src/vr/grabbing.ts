@@ -7,7 +7,7 @@ import { restOn } from "../tools/rest_on";
 import { type HeldPose, PoseDrag, presentPoses } from "../tools/poses";
 import type { Hand, Hands, Side } from "./hand";
 import { isMovable } from "./near";
-import { Pull } from "./pull";
+import { Pull } from "../tools/pull";
 import type { Stance } from "./stance";
 
 const UP = new Vector3(0, 1, 0);
@@ -99,7 +99,7 @@ export class Grabbing {
       floats: false,
       from: this.frame.position.clone(),
       moved: false,
-      pull: this.isStopped ? null : new Pull(this.parts, hand.side, { index, point, rotation: pose.rotation, strength: this.parts.preferences.get("vr").strength }),
+      pull: this.isStopped ? null : new Pull(this.parts, { index, point, rotation: pose.rotation, hand: hand.side, strength: this.parts.preferences.get("vr").strength }),
     };
     this.holds[hand.side] = hold;
     this.parts.selection.set([index]);
@@ -112,7 +112,7 @@ export class Grabbing {
     const hold = this.holds[side];
     if (!hold) return;
     this.holds[side] = null;
-    void hold.pull?.release();
+    hold.pull?.release();
     const other = this.holds[side === "left" ? "right" : "left"];
     if (other && other.index === hold.index) this.anchor(this.hands.of(side === "left" ? "right" : "left"), other);
     else this.endDrag(hold.index);
