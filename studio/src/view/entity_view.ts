@@ -19,7 +19,7 @@ import { SoftBodies } from "./soft_bodies";
 import { type Quality, tintOf, type TintStrength } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
-/** A lamp that is on is brighter than what light falls on it. */
+/** A lamp that is on shines by itself as far as its colour is above 1 (tint.ts). */
 const GLOWING = new Color(1.9, 1.8, 1.6);
 const STILL_COLOR = new Color(0.115, 0.12, 0.13);
 /** Colour of grains without a colour of their own. */
@@ -42,10 +42,17 @@ function shapeDrawable(entity: Entity): Drawable {
 
 /** Colours that are easy to tell apart: neighbours in the list differ in hue. */
 export function colorOf(entity: Entity): Color {
-  if (entity.model) return isOn(entity.light) ? GLOWING : WHITE;
+  if (entity.model) return WHITE;
   if (entity.color) return new Color().setRGB(...entity.color);
   if (entity.shape?.type === "plane" || entity.shape?.type === "heightfield" || entity.shape?.type === "mesh") return STILL_COLOR;
   return new Color().setHSL((entity.index * 0.381966) % 1, 0.5, 0.45);
+}
+
+function drawnColor(entity: Entity): Color {
+  const own = colorOf(entity);
+  if (!isOn(entity.light)) return own;
+  // Whatever its own colour is: the brightest part of a lamp's light is as bright.
+  return own.clone().multiplyScalar(1 / Math.max(own.r, own.g, own.b, 0.1)).multiply(GLOWING);
 }
 
 /** Draws every entity of the document at its present pose. */
@@ -338,7 +345,7 @@ export class EntityView {
     const shown = this.batchOf.get(entity.index);
     if (shown?.key !== key) return false;
     shown.entity = entity;
-    shown.batch.setColor(entity.index, colorOf(entity));
+    shown.batch.setColor(entity.index, drawnColor(entity));
     this.colorCloud(entity.index);
     this.motion.moved.add(entity.index);
     return true;
@@ -351,7 +358,7 @@ export class EntityView {
       batch = new Batch(make(), this.group, this.quality);
       this.batches.set(key, batch);
     }
-    batch.add(entity.index, colorOf(entity));
+    batch.add(entity.index, drawnColor(entity));
     this.batchOf.set(entity.index, { key, batch, entity });
     this.colorCloud(entity.index);
     // At once, not with the next picture: rays of the pointer meet it from now on.

@@ -29,6 +29,12 @@ export const MIX = `
 float ownLight = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * (0.45 + 0.9 * ownLight), vTint.a);
 #include <alphatest_fragment>`;
+/** What is brighter than its colour could be shines: a lamp that is on. */
+const GLOW = `
+#if defined(USE_COLOR) || defined(USE_COLOR_ALPHA)
+totalEmissiveRadiance += diffuseColor.rgb * clamp(max(vColor.r, max(vColor.g, vColor.b)) - 1.0, 0.0, 1.0);
+#endif
+${MIX}`;
 /** A rim of the state's colour where the surface turns away from the eye: the rest keeps its own colours. */
 const RIM = `
 float turned = 1.0 - abs(dot(normal, normalize(vViewPosition)));
@@ -51,7 +57,7 @@ export function tintable(original: Material, quality: Quality, hasRim: boolean):
     if (finish) addFinish(shader, finish);
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
-      .replace("#include <alphatest_fragment>", MIX)
+      .replace("#include <alphatest_fragment>", GLOW)
       .replace("#include <opaque_fragment>", hasRim ? RIM : "#include <opaque_fragment>");
   };
   const key = `tint${hasRim ? " and rim" : ""}${hasSurface ? " and surface" : ""}${finish ? " and finish" : ""}`;
