@@ -241,6 +241,7 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.click(canvas.x + 20, canvas.y + 20);
     await page.mouse.click(first.x, first.y);
     assert.deepEqual((await selection()).sort(), boxes.slice(0, 2));
+    assert.match(await page.getByTestId("group-hint").textContent(), /Group “Group”.*Alt/, "how to select one of them is said");
     const before = [await entity(boxes[0]), await entity(boxes[1])];
     await drag(first, { x: first.x + 60, y: first.y + 60 });
     const after = [await entity(boxes[0]), await entity(boxes[1])];

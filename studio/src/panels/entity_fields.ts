@@ -2,6 +2,7 @@
 import { Color } from "three";
 import type { NewEntity } from "../connection/messages";
 import { commonComponents, withTyped } from "../document/components";
+import { outermostGroup } from "../document/groups";
 import { nameOf } from "../document/scene_document";
 import type { Entity, Shape, ShapeOfLengths, Vector } from "../connection/scene_types";
 import type { Parts } from "../parts";
@@ -59,7 +60,10 @@ export class EntityFields {
     const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, t("{{count}} entities", { count: entities.length }));
     const padlock = this.padlock();
     this.rows.push(padlock);
-    this.head.replaceChildren(element("div", { class: "entity-head" }, title, padlock.root), ...(card ? [card] : []));
+    const group = single ? "" : outermostGroup(entities[0]!.group);
+    const isGroup = group !== "" && entities.every((entity) => outermostGroup(entity.group) === group);
+    const hint = isGroup ? element("p", { class: "note", "data-testid": "group-hint" }, t("Group “{{group}}”. Alt and a click select one of them alone.", { group })) : null;
+    this.head.replaceChildren(...[element("div", { class: "entity-head" }, title, padlock.root), hint, card].filter((each) => each !== null));
     this.root.replaceChildren(
       foldingGroup(this.parts.preferences, "entity.place", t("Place and size"), true, ...shown.map((row) => row.root)),
       foldingGroup(this.parts.preferences, "entity.start", t("Start and forces"), false, ...start.map((row) => row.root)),
