@@ -34,7 +34,7 @@ const say = (text) => console.log(`${Math.round((performance.now() - begun) / 10
 const server = new RealServer(program, prepareDatabase(program));
 const browser = await openBrowser();
 const address = await server.start({ embody_scene: 1, title: "Film", entities: [] });
-const page = await openStudio(browser, address, { width: 1500, height: 700, quality: isQuick || words.includes("--fast") ? "low" : "high", prepare: async (made) => made.setDefaultTimeout(300000) });
+const page = await openStudio(browser, address, { width: 1500, height: 700, quality: isQuick || words.includes("--fast") ? "low" : "high", prepare: async (made) => made.setDefaultTimeout(120000) });
 const user = new User(page, { hurries: isQuick });
 const command = (name, params = {}) => commandFrom(page, name, params);
 
@@ -122,12 +122,17 @@ async function doorAndWindows() {
   const sky = page.getByTestId("scene-fields").getByLabel("Sky");
   await sky.check();
   await user.hold(1);
+  await letTimePass(7, 10);
+  await user.hold(1);
+}
+
+/** Of the day, by the slider of the scene. */
+async function letTimePass(from, to) {
   const slider = page.getByTestId("time-of-day");
-  for (let hour = 7; hour <= 10; hour += 0.25) {
+  for (let hour = from; hour <= to; hour += 0.25) {
     await slider.fill(String(hour));
     await page.waitForTimeout(120);
   }
-  await user.hold(1);
 }
 
 /** Words to find it by, key, place, and turns by 15°. */
@@ -169,7 +174,7 @@ async function placeAll(list) {
 
 /** Typed sizes of a box, m. */
 async function resize(width, height, depth) {
-  for (const [label, value] of [["Width", width], ["Height", height], ["Depth", depth]]) await user.type(`${label}, m`, value);
+  for (const [label, value] of [["Width", width], ["Height", height], ["Depth", depth]]) await user.type(label, value);
 }
 
 async function paint(color) {
@@ -192,20 +197,6 @@ async function softThings() {
   }
 }
 
-async function water() {
-  await look([0.6, 1.7, 1.7], [-0.9, 0.5, -0.35]);
-  const bowl = await user.place("bowl", `${CATALOGUE}Scopia#bowl`, [-0.8, 0.54, -0.35]);
-  await user.hold(1);
-  await user.primitive("water", [-0.8, 0.6, -0.35], { name: "Water" });
-  await resize(0.17, 0.17, 0.17);
-  const [x, y, z] = bowl.position;
-  await user.type("Position x", x);
-  await user.type("Position z", z);
-  await user.type("Position y", (y + 0.36).toFixed(3));
-  await user.hold(2);
-  await user.key("Escape");
-}
-
 async function dominoes() {
   await look([2.2, 2.0, 4.9], [0.1, 0.2, 1.2]);
   await user.primitive("box", [-1.6, 0.01, 1.55], { name: "Domino" });
@@ -215,8 +206,8 @@ async function dominoes() {
   await user.key("Control+Shift+D");
   await page.getByLabel("Copies along x", { exact: true }).fill("24");
   await page.getByLabel("Copies along x", { exact: true }).press("Enter");
-  await page.getByLabel("Distance along x, m", { exact: true }).fill("0.14");
-  await page.getByLabel("Distance along x, m", { exact: true }).press("Enter");
+  await page.getByLabel("Distance along x", { exact: true }).fill("0.14");
+  await page.getByLabel("Distance along x", { exact: true }).press("Enter");
   await user.hold(2);
   await page.getByTestId("array-make").click();
   await page.waitForFunction(() => window.embody.entities().filter(({ name }) => name.startsWith("Domino")).length === 24);
@@ -228,6 +219,21 @@ async function dominoes() {
   await user.key("Escape");
   await look(...OVERVIEW, { steps: 30 });
   await user.hold(1);
+}
+
+async function evening() {
+  await user.key("Escape");
+  await letTimePass(15, 20.5);
+  await user.hold(1);
+  const { scene } = await command("hello");
+  await user.select([scene.entities.find(({ model }) => model?.endsWith("#living_lamp")).index]);
+  await page.getByTestId("look-fields").getByLabel("Light").check();
+  await user.hold(2);
+  await user.key("Escape");
+  await look([1.2, 1.5, 2.2], [-1.2, 0.6, -1]);
+  await user.hold(3);
+  await letTimePass(7, 11);
+  await look(...OVERVIEW);
 }
 
 // Playing ----------------------------------------------------------------------------------------------------------------
@@ -247,9 +253,9 @@ async function playFor(seconds) {
   await page.waitForFunction(() => window.embody.simulation().state === "paused");
 }
 
-/** Takes hold of a point of the world while the scene plays slowly, pulls it to others, s of simulated time each, and lets go. */
+/** Takes hold of a thing, or of a point of the world, while the scene plays slowly, pulls it to others, s of simulated time each, and lets go. What is held moves in the picture's plane. */
 async function pull(from, ways) {
-  const grip = await user.project(from);
+  const grip = Array.isArray(from) ? await user.project(from) : await user.seen(from.index);
   await user.glide(grip, { steps: 8 });
   await page.mouse.down();
   for (const { to, seconds } of ways) {
@@ -285,8 +291,8 @@ async function addJump() {
   await page.getByTestId("properties").getByTestId("action-fields").locator("summary").click();
   await page.getByTestId("add-action").click();
   await page.getByTestId("effect").selectOption("set_velocity");
-  await page.getByTestId("action-dialog").getByLabel("Velocity y, m/s").fill("3.2");
-  await page.getByTestId("action-dialog").getByLabel("Velocity y, m/s").press("Enter");
+  await page.getByTestId("action-dialog").getByLabel("Velocity y").fill("3.2");
+  await page.getByTestId("action-dialog").getByLabel("Velocity y").press("Enter");
   await page.getByTestId("action-save").click();
 }
 
@@ -298,34 +304,37 @@ const CHAPTERS = {
   furniture: () => recorded("Furniture from the library", "furniture", () => placeAll(FURNITURE)),
   soft: () => recorded("Soft things", "soft", softThings),
   things: () => recorded("Things on things", "things", () => placeAll(SMALL)),
-  water: () => recorded("Water for the bowl", "water", water),
   dominoes: () => recorded("Dominoes in a row", "dominoes", dominoes),
+  evening: () => recorded("Evening", "evening", evening),
   async play() {
     await addJump();
     await user.key("Escape");
     await playFor(4);
     await filmed("Play: everything is what it is made of", "play", { from: 0, to: 4 });
-    await look([0.3, 1.35, 1.0], [-0.85, 0.55, -0.4]);
-    await filmed("Water finds its level (½ speed)", "bowl", { from: 0, to: 2.5, rate: 0.5 });
     await look([3.3, 1.7, 2.4], [1.5, 0.75, 0.2]);
     await filmed("A cloth falls over its table (½ speed)", "cloth", { from: 0, to: 2, rate: 0.5 });
 
-    await look([2.2, 1.6, 4.6], [0.2, 0.15, 1.3]);
+    // From in front, so that the way along the dominoes lies in the picture's plane.
+    await look([0.6, 1.3, 5.4], [0.6, 0.2, 1.5]);
     const ball = await user.named("Basketball");
     const throwBall = () => pull(ball.position, [{ to: [ball.position[0] - 0.9, ball.position[1] + 0.05, ball.position[2]], seconds: 0.35 }]);
     const thrown = await acted("A throw", "throw", throwBall, 3.5);
     await look([-1.4, 1.0, 3.9], [0.1, 0.15, 1.4]);
     await filmed("Again, at ¼ speed", "domino-run", { from: thrown.from + 0.4, to: Math.min(thrown.to, thrown.from + 3.4), rate: 0.25 });
 
-    await look([3.6, 1.9, 3.2], [1.5, 0.7, 0.4]);
-    const swept = await acted("The tablecloth …", "sweep", () => pull([1.5, 0.7, 0.62], [{ to: [1.7, 0.9, 1.9], seconds: 0.45 }]), 2.5);
+    await look([1.9, 1.7, 3.4], [1.7, 0.7, 0.3]);
+    const cloth = await user.named("Tablecloth");
+    const swept = await acted("The tablecloth …", "sweep", () => pull(cloth, [{ to: [3.4, 0.85, 0.3], seconds: 0.5 }]), 2.5);
     await filmed("… at ¼ speed", "sweep-slow", { from: swept.from + 0.3, to: Math.min(swept.to, swept.from + 3), rate: 0.25 });
 
-    await look(...OVERVIEW);
-    const toppled = await acted("The bookcase", "bookcase", () => pull([1.7, 2.05, -1.77], [{ to: [1.7, 1.7, -0.3], seconds: 0.9 }]), 2.5);
+    await look([4.9, 2.6, -0.3], [1.6, 1.1, -0.8]);
+    const toppled = await acted("The bookcase", "bookcase", () => pull([1.8, 2.16, -1.9], [{ to: [1.8, 2.0, -0.2], seconds: 0.9 }]), 2.5);
     await look([3.9, 1.9, 2.9], [1.4, 0.8, -0.4]);
     await filmed("… at ¼ speed", "bookcase-slow", { from: toppled.from + 0.4, to: Math.min(toppled.to, toppled.from + 3.4), rate: 0.25 });
 
+    // From the start again, so that nothing lies on the cloth.
+    await user.key("Home");
+    await playFor(2);
     await look(...OVERVIEW);
     const jumped = await acted("An action: K lets everything jump", "jump", () => user.key("k"), 2.5);
     await filmed("… at ¼ speed", "jump-slow", { from: jumped.from, to: Math.min(jumped.to, jumped.from + 2.2), rate: 0.25 });

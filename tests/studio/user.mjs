@@ -138,6 +138,7 @@ export class User {
   /** Drags what `source` offers to a point of the world; returns the new entity. */
   async dragIn(source, point, { turns = 0, name = "" } = {}) {
     const before = new Set((await this.entities()).map(({ index }) => index));
+    await source.scrollIntoViewIfNeeded();
     const box = await source.boundingBox();
     await this.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     this.at = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
@@ -182,31 +183,53 @@ export class User {
     throw new Error("no place is empty");
   }
 
-  /** Turns, shifts and zooms until the camera is there, near enough, as a user does. */
+  /** Turns, shifts and zooms until the camera is there, near enough, as a user does; from far, where the target is not in the picture. */
   async lookFrom(position, target, fixed = [], { steps = 30 } = {}) {
     const spherical = (camera) => new Spherical().setFromVector3(new Vector3(...camera.position).sub(new Vector3(...camera.target)));
     const wanted = spherical({ position, target });
     const camera = () => this.page.evaluate(() => window.embody.camera());
+    if (!(await this.isInView(target))) {
+      await this.key("Escape");
+      await this.key("f");
+      await this.page.waitForTimeout(700);
+    }
     const now = spherical(await camera());
     let angle = now.theta - wanted.theta;
     angle -= 2 * Math.PI * Math.round(angle / (2 * Math.PI));
     const turn = { x: angle / ORBIT_PER_PIXEL, y: (now.phi - wanted.phi) / ORBIT_PER_PIXEL };
     await this.dragBy(turn, steps, fixed, "left");
-    // Shifts what is in the middle.
-    for (let times = 0; times < 3; ++times) {
-      const canvas = await this.canvas();
-      const middle = { x: canvas.x + canvas.width / 2, y: canvas.y + canvas.height / 2 };
-      const at = await this.project(target);
-      const shift = { x: middle.x - at.x, y: middle.y - at.y };
-      if (Math.hypot(shift.x, shift.y) < 3) break;
-      await this.dragBy(shift, times === 0 ? steps : 6, fixed, "middle");
-    }
-    const notches = Math.log(wanted.radius / spherical(await camera()).radius) / Math.log(ZOOM_PER_NOTCH);
+    if (!(await this.isInView(target))) throw new Error(`${target} is not in the picture`);
+    await this.shiftToMiddle(target, steps, fixed);
+    // The camera turns about another point of the ray through its target.
+    const seen = await camera();
+    const arm = spherical(seen).radius;
+    const tooFar = new Vector3(...target).distanceTo(new Vector3(...seen.position)) - wanted.radius;
+    const notches = Math.log(Math.max(arm - tooFar, 0.3) / arm) / Math.log(ZOOM_PER_NOTCH);
     const count = Math.max(1, Math.ceil(Math.abs(notches) * 3));
     for (let at = 0; at < count && Math.abs(notches) > 0.1; ++at) {
       const frames = await this.page.evaluate(() => window.embody.frames());
       await this.page.mouse.wheel(0, (notches / count) * 100);
       await this.page.waitForFunction((frames) => window.embody.frames() > frames, frames, { timeout: PICTURE_MS, polling: 10 }).catch(() => {});
+    }
+    await this.shiftToMiddle(target, 6, fixed);
+  }
+
+  /** Whether a point of the world is before the camera and on the canvas. */
+  async isInView(point) {
+    const { position, target } = await this.page.evaluate(() => window.embody.camera());
+    const ahead = new Vector3(...target).sub(new Vector3(...position));
+    const { x, y, width, height } = await this.canvas();
+    const at = await this.project(point);
+    return ahead.dot(new Vector3(...point).sub(new Vector3(...position))) > 0 && at.x > x && at.y > y && at.x < x + width && at.y < y + height;
+  }
+
+  async shiftToMiddle(point, steps, fixed) {
+    for (let times = 0; times < 4; ++times) {
+      const { x, y, width, height } = await this.canvas();
+      const at = await this.project(point);
+      const shift = { x: x + width / 2 - at.x, y: y + height / 2 - at.y };
+      if (Math.hypot(shift.x, shift.y) < 3) break;
+      await this.dragBy(shift, times === 0 ? steps : 6, fixed, "middle");
     }
   }
 
