@@ -29,8 +29,11 @@ export async function playFilm(browser, path, times, folder = null) {
       const small = new OffscreenCanvas(32, 18).getContext("2d", { willReadFrequently: true });
       const pictures = [];
       for (const time of times) {
+        // The picture may come after the seek has ended.
+        const shown = new Promise((done) => video.requestVideoFrameCallback(done));
         video.currentTime = Math.min(time, video.duration - 0.01);
         await new Promise((done) => (video.onseeked = done));
+        await Promise.race([shown, new Promise((done) => setTimeout(done, 300))]);
         pen.drawImage(video, 0, 0);
         const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
         let light = 0, red = 0, row = 0;

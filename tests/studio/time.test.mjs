@@ -202,7 +202,8 @@ describe("the line of time", { timeout: 900000 }, () => {
     const film = await playFilm(session.browser, await file.path(), [0, duration - 0.1], process.env.EMBODY_TEST_PICTURES ?? null);
     const [first, last] = film.pictures;
     assert.ok(first.light > 15 && last.light > 15, "the scene is in the picture");
-    assert.ok(pictureDifference(first, last) > 0.3, "the ball was brought in");
+    const difference = pictureDifference(first, last);
+    assert.ok(difference > 0.3, `the ball was brought in: ${difference} between the first picture and that at ${last.time} of ${duration} s`);
     assert.deepEqual(page.faults, []);
   });
 

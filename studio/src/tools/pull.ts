@@ -26,14 +26,14 @@ export class Pull {
 
   /** Call in every picture in which target or rotation has changed: the server measures the hand's speed by them. */
   follow(): void {
-    const isNewer = !this.sent.equals(this.target) || !this.sentRotation.equals(this.rotation);
-    if (isNewer && !this.isOver && this.unanswered < MOST_UNANSWERED) this.send();
+    if (this.isNewer && !this.isOver && this.unanswered < MOST_UNANSWERED) this.send();
   }
 
   /** Lets go where the hand is now: the body flies on with the velocity that the hand gave it. */
   release(): void {
     if (this.isOver) return;
-    this.send();
+    // A place that is told again would say that the hand has stopped.
+    if (this.isNewer) this.send();
     this.isOver = true;
     // The server takes commands in their order. In a run that was reset meanwhile nothing is held any more.
     void this.parts.server.request("simulation.release", { hand: this.hold.hand }).catch(() => {});
@@ -44,6 +44,10 @@ export class Pull {
     const place = this.place();
     const held = await this.parts.server.command("simulation.grab", { index, point: point.toArray(), hand, strength, ...place });
     if (!held) this.isOver = true;
+  }
+
+  private get isNewer(): boolean {
+    return !this.sent.equals(this.target) || !this.sentRotation.equals(this.rotation);
   }
 
   /** The place that is now the newest, as it is sent. */

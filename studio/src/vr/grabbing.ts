@@ -112,7 +112,10 @@ export class Grabbing {
     const hold = this.holds[side];
     if (!hold) return;
     this.holds[side] = null;
-    hold.pull?.release();
+    if (hold.pull) {
+      this.moveByOne(this.hands.of(side), hold);
+      hold.pull.release();
+    }
     const other = this.holds[side === "left" ? "right" : "left"];
     if (other && other.index === hold.index) this.anchor(this.hands.of(side === "left" ? "right" : "left"), other);
     else this.endDrag(hold.index);
