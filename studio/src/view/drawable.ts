@@ -109,7 +109,8 @@ export function averageColor(drawable: Drawable): Color {
 export function averageOf(image: CanvasImageSource): Color {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 1;
-  const context = canvas.getContext("2d");
+  // Kept in memory: a canvas on the graphics card would wait for all that is being drawn there.
+  const context = canvas.getContext("2d", { willReadFrequently: true });
   if (!context) return new Color(1, 1, 1);
   context.imageSmoothingQuality = "high";
   context.drawImage(image, 0, 0, 1, 1);

@@ -37,6 +37,8 @@ const GROUND = new Plane(new Vector3(0, 1, 0), 0);
 const LONGEST_STEP_S = 0.1;
 /** Without antialiasing: after so long without a new picture, ms, the last one is drawn again at so many times the resolution. */
 const STILL_MS = 400;
+/** While models arrive, a picture at least so often, ms. */
+const ARRIVALS_MS = 500;
 const STILL_FINENESS = 2;
 /** So many pictures in succession, each later than this after the one before, ms, count as slow drawing. */
 const SLOW_PICTURES = 12;
@@ -73,6 +75,7 @@ export class View {
   private headset: Headset | null = null;
   private background: Color | null = null;
   private waiting = 0;
+  private arriving = 0;
   private still = 0;
   /** The present picture was drawn at the higher resolution. */
   private isFine = false;
@@ -120,7 +123,8 @@ export class View {
       entities.lookFrom(this.rig.camera.position);
       this.invalidate();
     });
-    entities.loaded.on(() => this.invalidate());
+    // Of many models that arrive only some pictures are drawn on the way: without a graphics card each takes as long as many of them.
+    entities.loaded.on(() => (entities.loading > 0 ? this.drawWithin(ARRIVALS_MS) : this.invalidate()));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
   }
 
@@ -142,6 +146,14 @@ export class View {
         this.waiting = 0;
         this.invalidate();
       }, wait);
+  }
+
+  /** Asks for a picture so many milliseconds after the last one at the latest. */
+  private drawWithin(milliseconds: number): void {
+    this.arriving ||= window.setTimeout(() => {
+      this.arriving = 0;
+      this.invalidate();
+    }, Math.max(0, this.lastFrame + milliseconds - performance.now()));
   }
 
   /** Stops drawing until resume(): screenshots of a page that always draws may never end. */
@@ -274,7 +286,7 @@ export class View {
     this.goesOn = flying || moving || peopleMove;
     if (flying || peopleMove || this.shadowsWait) this.invalidate();
     else if (moving) this.drawSoon();
-    else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
+    else if (!this.hasSmoothEdges && this.entities.loading === 0) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
   }
 
   /** Brings all that is drawn to the time `now` of the page's clock; returns whether anything is still on its way. */
