@@ -102,7 +102,7 @@ Vec3 turning_torque(const Held& held, Vec3 wanted, Vec3 wanted_spin, double max_
 }  // namespace
 
 void HandPath::report(double time, Vec3 position, Quat rotation) {
-    if (!samples_.empty() && samples_.back().time >= time) samples_.pop_back();
+    while (!samples_.empty() && samples_.back().time >= time) samples_.pop_back();
     if (!samples_.empty() &&
         (length(position - samples_.back().position) > max_jump || time - samples_.back().time > max_silence))
         samples_.clear();
