@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Vector3 } from "three";
+import { CommandRefused } from "./connection/connection";
 import type { BodyState } from "./document/motion";
 import { nameOf } from "./document/scene_document";
 import type { Studio } from "./studio";
@@ -14,6 +15,8 @@ import { type VrHook, vrHook } from "./vr/test_view";
 /** What tests and scripts in the page may read: `window.embody`. It can change nothing but the drawing. */
 export interface TestHook {
   connected(): boolean;
+  /** Resolves once the page has heard of all that the server had done before this call. */
+  caughtUp(): Promise<void>;
   simulation(): { state: string; time: number; step: number };
   statistics(): unknown;
   selection(): number[];
@@ -37,8 +40,8 @@ export interface TestHook {
   seenAt(index: number): { x: number; y: number } | null;
   /** Red, green, blue and amount of the state colour that an entity is drawn with. */
   tintOf(index: number): number[];
-  /** Number of an entity's points, of triangles of their surface where they are a liquid, and their box; null where it has no points. */
-  points(index: number): { count: number; triangles: number; liquid: boolean; lower: number[]; upper: number[] } | null;
+  /** Number of an entity's points, of triangles of their surface where they are a liquid and whether it is that of their present places, and their box; null where it has no points. */
+  points(index: number): { count: number; triangles: number; liquid: boolean; settled: boolean; lower: number[]; upper: number[] } | null;
   /** A soft entity's drawn form in its own frame: size of its box, number of vertices and mean length of their normals; else null. */
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
   /** Number of the selection's nodes that are marked as pinned. */
@@ -84,6 +87,14 @@ function memoryInUse(): number {
 export function offerTestHook(studio: Studio, headset: VrSession, sounds: ContactSounds, timeline: Timeline, joints: JointTool): void {
   const hook: TestHook = {
     connected: () => studio.server.isOpen && studio.server.ready,
+    // Events and replies come in order over one connection, so any answer comes after them.
+    caughtUp: () =>
+      studio.server.request("entity.presets", {}).then(
+        () => undefined,
+        (error: Error) => {
+          if (!(error instanceof CommandRefused)) throw error;
+        },
+      ),
     simulation: () => studio.playback.simulation,
     statistics: () => studio.playback.statistics,
     selection: () => [...studio.selection.indices],
@@ -140,7 +151,7 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     tintOf: (index) => studio.entities.tintOf(index),
     points: (index) => {
       const cloud = studio.entities.clouds.of(index);
-      return cloud ? { count: cloud.count, triangles: cloud.isLiquid ? cloud.triangles : 0, liquid: cloud.isLiquid, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
+      return cloud ? { count: cloud.count, triangles: cloud.isLiquid ? cloud.triangles : 0, liquid: cloud.isLiquid, settled: !cloud.isLiquid || cloud.isSettled, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
     },
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     pinned: () => studio.view.pins.count,

@@ -18,6 +18,8 @@ export class MockServer {
   constructor({ models = 40, port = 0 } = {}) {
     this.models = models;
     this.port = port;
+    /** How late replies are, ms; events come at once. */
+    this.late = 0;
     this.log = [];
     this.past = [];
     this.future = [];
@@ -177,7 +179,9 @@ export class MockServer {
       if (error instanceof Error) throw error;
       reply = { id, ok: false, error };
     }
-    socket.send(JSON.stringify(reply));
+    const answer = () => socket.send(JSON.stringify(reply));
+    if (this.late > 0) setTimeout(answer, this.late);
+    else answer();
     if (command === "hello") this.sendFrame();
   }
 

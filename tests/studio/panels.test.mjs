@@ -2,12 +2,13 @@
 // How the panels use the protocol, against a stand-in for the server: fast, and with any number of models.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
+import { openBrowser, openStudio, pictured } from "./browser.mjs";
 import { MockServer } from "./mock_server.mjs";
+import { allDone, until } from "./session.mjs";
 
 const CRATE = 2;
 
-describe("the Studio's panels", { timeout: 300000 }, () => {
+describe("the Studio's panels", { timeout: 900000 }, () => {
   let browser, mock, page, address;
 
   before(async () => {
@@ -33,6 +34,8 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
   async function choose(...indices) {
     await page.getByTestId("tab-In the scene").click();
     for (const [at, index] of indices.entries()) await select(index).click(at > 0 ? { modifiers: ["Control"] } : {});
+    // Until their values have come, those of the first one alone are shown.
+    await allDone(page);
   }
   const sent = (command) => mock.log.filter((each) => each.command === command).map((each) => each.params);
 
@@ -57,6 +60,9 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
   it("adds the marked model with the keyboard alone", async () => {
     await page.keyboard.press("/");
     await page.keyboard.type("chair");
+    // On a slow machine a part of the word is searched for, too, and finds as many.
+    await until(() => sent("catalog.search").at(-1).words, (words) => words === "chair", "the last search");
+    await allDone(page);
     await page.getByText("7,500 models").waitFor();
     await page.keyboard.press("Enter");
     await page.keyboard.press("ArrowRight");
@@ -97,18 +103,44 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
   it("moves with the handles as one step that undo takes back", async () => {
     await choose(CRATE);
     await page.getByTestId("tool.move").click();
+    // The pointer meets the handles once they have been drawn.
+    await pictured(page);
     const before = await page.evaluate((index) => window.embody.seenAt(index), CRATE);
     // The middle handle moves the entity in the plane of the picture.
     await page.mouse.move(before.x, before.y);
     await page.mouse.down();
     for (let step = 1; step <= 8; ++step) await page.mouse.move(before.x + 10 * step, before.y - 2 * step);
     await page.mouse.up();
+    // The last place is sent when the one before has been answered.
+    await allDone(page);
     await page.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
     const moved = mock.entity(CRATE).pose.position;
     assert.notDeepEqual(moved, [0, 1, 0]);
     await page.keyboard.press("Control+z");
-    await page.waitForFunction((index) => window.embody.entities().find((entity) => entity.index === index).position[1] === 1, CRATE);
+    await page.waitForFunction((index) => JSON.stringify(window.embody.entities().find((entity) => entity.index === index).position) === "[0,1,0]", CRATE);
     assert.equal(mock.past.length, 0);
+  });
+
+  it("takes a whole drag back by an undo right after it, however late the server answers", async () => {
+    await choose(CRATE);
+    await page.getByTestId("tool.move").click();
+    await pictured(page);
+    const { x, y } = await page.evaluate((index) => window.embody.seenAt(index), CRATE);
+    mock.late = 300;
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let step = 1; step <= 8; ++step) {
+      await page.mouse.move(x + 10 * step, y - 2 * step);
+      await pictured(page);
+      // The first place can be taken back before the last one is told.
+      if (step === 1) await page.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
+    }
+    await page.mouse.up();
+    await page.keyboard.press("Control+z");
+    await allDone(page);
+    assert.ok(sent("entity.transform").length > 1);
+    assert.equal(sent("edit.undo").length, 1);
+    assert.deepEqual(mock.entity(CRATE).pose.position, [0, 1, 0]);
   });
 
   it("edits a pose by numbers, in degrees", async () => {
@@ -144,6 +176,31 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 20000 });
     await page.waitForFunction(() => window.embody.entities().some((entity) => entity.name === "Newcomer"));
     await page.getByText("8 models", { exact: true }).waitFor();
+  });
+
+  it("takes a click on an icon that is exchanged while the button is down", async () => {
+    const play = await page.getByTestId("simulation.play").boundingBox();
+    await page.mouse.move(play.x + play.width / 2, play.y + play.height / 2);
+    await page.mouse.down();
+    // News write the bar anew.
+    mock.broadcast({ event: "history", undo: "move Crate", redo: null });
+    await page.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
+    await page.mouse.up();
+    await page.waitForFunction(() => window.embody.simulation().state === "playing");
+  });
+
+  it("takes a click on a thing of the list that is filled anew meanwhile", async () => {
+    await page.getByTestId("tab-In the scene").click();
+    const row = await select(CRATE).boundingBox();
+    await page.mouse.move(row.x + 20, row.y + row.height / 2);
+    await page.mouse.down();
+    mock.commands["entity.add"]({ entity: { name: "Ball", shape: { type: "sphere", radius: 0.2 } } });
+    await page.waitForFunction(() => window.embody.entities().length === 3);
+    // The list would be filled by now.
+    await page.evaluate(() => new Promise((done) => setTimeout(done, 200)));
+    await page.mouse.up();
+    await page.waitForFunction((index) => window.embody.selection()[0] === index, CRATE);
+    await select(3).waitFor();
   });
 
   it("shows the scene's own buttons, and hands its keys on while it plays", async () => {
@@ -195,12 +252,25 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
 
   it("shows the progress of a long command, and lets only its own page stop it", async () => {
     const work = page.getByTestId("stat-work");
-    mock.broadcast({ event: "progress", client: 7, done: 1200, total: 60000 });
-    await work.getByText("Changing models: 1,200 of 60,000").waitFor();
-    await page.getByTestId("stop-work").click();
-    mock.broadcast({ event: "progress", client: 8, done: 1300, total: 60000 });
-    await work.getByText("1,300 of 60,000").waitFor();
-    assert.ok(!(await page.getByTestId("stop-work").isVisible()));
+    // A server tells it again and again; without news the page takes it as done.
+    let telling;
+    const tell = (client, done) => {
+      clearInterval(telling);
+      const news = () => mock.broadcast({ event: "progress", client, done, total: 60000 });
+      news();
+      telling = setInterval(news, 150);
+    };
+    try {
+      tell(7, 1200);
+      await work.getByText("Changing models: 1,200 of 60,000").waitFor();
+      await page.getByTestId("stop-work").click();
+      tell(8, 1300);
+      await work.getByText("1,300 of 60,000").waitFor();
+      assert.ok(!(await page.getByTestId("stop-work").isVisible()));
+    } finally {
+      clearInterval(telling);
+    }
+    await allDone(page);
     assert.equal(sent("catalog.stop").length, 1);
     mock.broadcast({ event: "catalog", batch: 3, command: "set many", label: "Set Mass of 9 models", models: 9, keys: null, attributes: ["mass"], session: "studio: Eva", client: 8 });
     await page.getByText("Changed Mass of 9 models, by Eva").waitFor();

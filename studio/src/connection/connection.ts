@@ -98,6 +98,8 @@ export class Connection {
         this.opened.emit();
         break;
       case "closed":
+        // A try that failed while there is no connection is no news.
+        if (!this.isOpen) break;
         this.isOpen = false;
         for (const { reject } of this.waiting.values()) reject(new NotConnected());
         this.waiting.clear();

@@ -7,6 +7,7 @@ import { type ActionParts, openAction } from "./action_dialog";
 import { actionText, isCaused } from "./action_text";
 import { element, setText, show } from "./element";
 import { foldingGroup } from "./folding";
+import { afterPress } from "./press";
 import { t } from "../language";
 
 const MOST = 200;
@@ -22,9 +23,10 @@ export class ActionList {
     const add = element("button", { class: "chip", "data-testid": "add-action", onclick: () => openAction(parts) }, t("Add “When … then …”"));
     this.group = foldingGroup(parts.preferences, "actions", t("Actions"), false, this.advice, this.list, element("div", { class: "preset-chips" }, add));
     this.root = element("section", { class: "entity", "data-testid": "action-fields", "aria-label": t("Actions") }, this.group);
-    parts.selection.changed.on(() => this.update());
-    parts.picked.changed.on(() => this.update());
-    parts.document.changed.on(({ all, actions, entities, removed }) => (all || actions || entities.length + removed.length > 0) && this.update());
+    const update = (): void => this.update();
+    parts.selection.changed.on(update);
+    parts.picked.changed.on(update);
+    parts.document.changed.on(({ all, actions, entities, removed }) => (all || actions || entities.length + removed.length > 0) && afterPress(update));
     this.update();
   }
 

@@ -67,6 +67,8 @@ export class AttributeRow {
   private readonly reset: HTMLButtonElement;
   private shown: AttributeEntry;
   private same = true;
+  /** The warning that is written, as text. */
+  private warned = "";
 
   constructor(
     entry: AttributeEntry,
@@ -124,6 +126,10 @@ export class AttributeRow {
     show(this.warning, warning !== undefined);
     this.root.classList.toggle("warned", warning !== undefined);
     if (!warning) return;
+    // The same warning stays as it is: its button may be pressed just now.
+    const key = JSON.stringify(warning);
+    if (key === this.warned) return;
+    this.warned = key;
     const { reset, remedy } = warning;
     const told = translateServerText(remedy);
     const text = told ? `${told[0]!.toUpperCase()}${told.slice(1)}` : "";

@@ -41,6 +41,9 @@ interface NumberOptions {
 export function numberField(label: string, unit: string, commit: (value: number) => void, { step, format = PLAIN, mark, each }: NumberOptions = {}): Field<number> {
   let shown = "";
   let value: number | null = null;
+  // What set() showed last, and whether what was typed since then was refused.
+  let told: number | null = null;
+  let isRefused = false;
   const hasUnit = unit !== "" && unit !== "1";
   const input = element("input", {
     type: "text",
@@ -54,7 +57,10 @@ export function numberField(label: string, unit: string, commit: (value: number)
   const behind = hasUnit ? element("span", { class: "unit" }, unit) : null;
   const root = element("span", { class: "field" }, mark ? element("span", { class: "mark", "aria-hidden": "true" }, mark) : null, input, behind);
 
-  const setError = (reason: string | null): void => markError(root, input, reason);
+  const setError = (reason: string | null): void => {
+    isRefused = reason !== null;
+    markError(root, input, reason);
+  };
   const take = (): void => {
     if (input.value === shown) return;
     const change = readChange(input.value);
@@ -92,7 +98,9 @@ export function numberField(label: string, unit: string, commit: (value: number)
     setError,
     set(next) {
       if (document.activeElement === input && input.value !== shown) return;
-      value = next;
+      // What was refused stays with its reason until the value is another one.
+      if (isRefused && next === told) return;
+      told = value = next;
       const text = next === null ? "" : format.write(next);
       // The refused text has been replaced, so its error is removed.
       if (text !== shown) setError(null);

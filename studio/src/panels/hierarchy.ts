@@ -6,6 +6,7 @@ import type { Parts } from "../parts";
 import { icon } from "../tools/icons";
 import { setLocked } from "../tools/locks";
 import { element, setText, show } from "./element";
+import { afterPress } from "./press";
 import { t, translateServerText } from "../language";
 
 /** The tree shows no more rows than this; the filter finds the rest. */
@@ -24,6 +25,7 @@ export class Hierarchy {
   private carried: Carried | null = null;
   private rows = 0;
   private timer = 0;
+  private readonly refill = (): void => this.fill();
 
   constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "entities" | "view" | "warnings">) {
     this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
@@ -31,7 +33,7 @@ export class Hierarchy {
     this.takesDrops(this.list, "");
     parts.document.changed.on(() => {
       clearTimeout(this.timer);
-      this.timer = window.setTimeout(() => this.fill(), DELAY_MS);
+      this.timer = window.setTimeout(() => afterPress(this.refill), DELAY_MS);
     });
     parts.selection.changed.on(() => this.mark());
     parts.warnings.changed.on(() => this.warn());

@@ -138,6 +138,7 @@ export class ModelBrowser {
 
   private searchSoon(): void {
     clearTimeout(this.timer);
+    this.grid.awaitSearch();
     this.timer = window.setTimeout(() => this.search(), SEARCH_DELAY_MS);
   }
 

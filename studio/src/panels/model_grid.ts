@@ -65,6 +65,11 @@ export class ModelGrid {
     parts.picked.changed.on(() => this.markPicked());
   }
 
+  /** A search will follow: the tiles are those of the last one. */
+  awaitSearch(): void {
+    this.setBusy(true);
+  }
+
   showSearch(search: Search): void {
     this.search = search;
     this.keys = null;
@@ -140,6 +145,7 @@ export class ModelGrid {
     this.pages = new Map();
     this.active = 0;
     this.root.scrollTop = 0;
+    this.setBusy(true);
   }
 
   private async loadPage(page: number): Promise<void> {
@@ -156,6 +162,7 @@ export class ModelGrid {
     if (generation !== this.generation) return;
     if (!answer) {
       this.pages.delete(page);
+      this.setBusy(false);
       return;
     }
     for (const model of answer.models) this.parts.models.learn(model);
@@ -167,7 +174,13 @@ export class ModelGrid {
     this.total = total;
     this.clear();
     this.lay();
+    this.setBusy(false);
     this.counted.emit(total);
+  }
+
+  /** For screen readers and tests: whether other tiles will come. */
+  private setBusy(busy: boolean): void {
+    this.root.setAttribute("aria-busy", String(busy));
   }
 
   private clear(): void {

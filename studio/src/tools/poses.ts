@@ -44,7 +44,6 @@ export class PoseDrag {
       parts.entities.held.set(index, { position: pose.position.clone(), rotation: pose.rotation.clone(), scale: pose.scale });
   }
 
-
   /** Draws an entity at the changed pose. Call send() after all of them. */
   hold(index: number, change: (pose: HeldPose, start: HeldPose) => void): void {
     const held = this.parts.entities.held.get(index);
@@ -59,16 +58,18 @@ export class PoseDrag {
   send(): void {
     this.newer = true;
     if (this.sending) return;
-    this.newer = false;
-    this.sending = this.parts.server.command("entity.transform", { poses: this.poses(), merge: this.merge }).then(() => {
+    this.sending = this.tell().then(() => {
       this.sending = null;
       if (this.newer) this.send();
     });
   }
 
-  /** Ends once the server has the last pose, so that no entity jumps back in between. */
+  /**
+   * Ends once the server has the last pose, so that no entity jumps back in between. That pose is sent without waiting for the
+   * answer to the one before: an undo right after the release comes after it.
+   */
   async end(): Promise<void> {
-    while (this.sending) await this.sending;
+    await Promise.all([this.sending, this.newer && this.tell()]);
     for (const [index] of this.start) {
       const held = this.parts.entities.held.get(index);
       if (held) this.parts.motion.place(index, held.position.toArray(), held.rotation.toArray());
@@ -76,6 +77,11 @@ export class PoseDrag {
       this.parts.motion.moved.add(index);
     }
     this.parts.view.invalidate();
+  }
+
+  private tell(): Promise<unknown> {
+    this.newer = false;
+    return this.parts.server.command("entity.transform", { poses: this.poses(), merge: this.merge });
   }
 
   private poses(): PoseEdit[] {

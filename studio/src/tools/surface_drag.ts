@@ -32,9 +32,9 @@ export class SurfaceDrag {
     this.sending ??= this.send().finally(() => (this.sending = null));
   }
 
-  /** Resolves once the server has the last place. */
+  /** Resolves once the server has the last place, which is sent at once: an undo right after the release comes after it. */
   async end(): Promise<void> {
-    while (this.sending) await this.sending;
+    await Promise.all([this.offset && this.tell(this.offset), this.sending]);
   }
 
   private async send(): Promise<void> {
@@ -44,13 +44,17 @@ export class SurfaceDrag {
       const at = now?.point && view.project(new Vector3(...now.point));
       this.offset = at ? { x: at.x - this.startX, y: at.y - this.startY } : { x: 0, y: 0 };
     }
-    while (this.wanted) {
-      const { x, y, snap } = this.wanted;
-      this.wanted = null;
-      const placed = await server.command("entity.drag", { indices: this.indices, drop: dropAt(this.parts, x + this.offset.x, y + this.offset.y, snap), merge: this.merge });
-      // A refusal was told to the user; the next move would only repeat it.
-      if (!placed) return;
-    }
+    // A refusal was told to the user; the next move would only repeat it.
+    while (this.wanted) if (!(await this.tell(this.offset))) return;
+  }
+
+  /** Sends the newest place, if there is one that was not sent; whether the server took it. */
+  private async tell(offset: { x: number; y: number }): Promise<boolean> {
+    if (!this.wanted) return true;
+    const { x, y, snap } = this.wanted;
+    this.wanted = null;
+    const drop = dropAt(this.parts, x + offset.x, y + offset.y, snap);
+    return (await this.parts.server.command("entity.drag", { indices: this.indices, drop, merge: this.merge })) !== undefined;
   }
 }
 

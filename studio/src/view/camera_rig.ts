@@ -166,7 +166,7 @@ export class CameraRig {
   }
 
   private glideTo(toTarget: Vector3, toArm: Spherical, start: number): void {
-    this.glide = { fromTarget: this.target.clone(), toTarget, fromArm: this.arm.clone(), toArm, start: wantsCalm() ? start - FLY_TIME_MS : start };
+    this.glide = { fromTarget: this.target.clone(), toTarget, fromArm: this.arm.clone(), toArm, start: wantsCalm() ? -Infinity : start };
     this.changed.emit();
   }
 
