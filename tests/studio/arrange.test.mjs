@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { takePicture } from "./browser.mjs";
-import { Session } from "./session.mjs";
+import { allDone, searchFor, Session, settled } from "./session.mjs";
 
 const fixed = (name, size, position, color = [0.8, 0.78, 0.72]) => ({
   name,
@@ -73,9 +73,9 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.down();
     await page.mouse.move(from.x + 6, from.y + 2, { steps: 2 });
     await page.mouse.move(to.x, to.y, { steps: 8 });
-    await page.waitForTimeout(700);
+    await allDone(page);
     await page.mouse.up();
-    await page.waitForTimeout(700);
+    await allDone(page);
   }
 
   it("lifts a laptop from the floor onto a table, in one step of undo", async () => {
@@ -100,7 +100,8 @@ describe("building in a room", { timeout: 900000 }, () => {
     const hung = await bounds(clock);
     assert.ok(Math.abs(hung.pose.position[2] - hung.size[2] / 2 - WALL) < 0.02, `its back is at the wall: ${hung.pose.position[2]}, ${hung.size}`);
     await session.command("simulation.step", { count: 180 });
-    await page.waitForTimeout(500);
+    await page.waitForFunction(() => window.embody.simulation().step === 180);
+    await allDone(page);
     const after = await entity(clock);
     hung.pose.position.forEach((each, axis) => assert.ok(Math.abs(each - after.position[axis]) < 1e-3, `it hangs where it was: ${after.position} for ${hung.pose.position}, state ${after.state}`));
     await session.command("simulation.reset");
@@ -126,8 +127,7 @@ describe("building in a room", { timeout: 900000 }, () => {
     const words = ["chair", "lamp", "sofa", "vase", "cabinet", "clock", "table", "book"];
     const canvas = await page.getByTestId("canvas").boundingBox();
     for (let i = 0; i < 20; ++i) {
-      await page.getByTestId("search").fill(words[i % words.length]);
-      await page.waitForFunction((word) => document.querySelector("[data-testid=model-tile]")?.getAttribute("aria-label")?.toLowerCase().includes(word), words[i % words.length]);
+      await searchFor(page, words[i % words.length]);
       const count = (await entities()).length;
       const tile = await page.getByTestId("model-tile").first().boundingBox();
       await page.mouse.move(tile.x + tile.width / 2, tile.y + tile.height / 2);
@@ -135,7 +135,8 @@ describe("building in a room", { timeout: 900000 }, () => {
       await page.mouse.move(tile.x + 60, tile.y + 10, { steps: 2 });
       await page.mouse.move(canvas.x + canvas.width * (0.2 + 0.6 * random()), canvas.y + canvas.height * (0.25 + 0.65 * random()), { steps: 3 });
       await page.waitForFunction(() => window.embody.ghost(), null, { timeout: 30000 });
-      await page.waitForTimeout(300);
+      // The ghost is where the server said last: not yet where the pointer is now.
+      await allDone(page);
       const ghost = await page.evaluate(() => window.embody.ghost());
       if (i === 0) await picture("ghost");
       await page.mouse.up();
@@ -155,11 +156,13 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.click(seen.x, seen.y);
     assert.deepEqual(await selection(), [chair]);
     await page.keyboard.press("Control+c");
-    await page.waitForTimeout(500);
+    await allDone(page);
     await load({ ...ROOM, title: "Another room" });
     await page.mouse.move(seen.x, seen.y + 60);
     await page.keyboard.press("Control+v");
     await drawn(4);
+    // It is selected when the answer has come, after the event that draws it.
+    await page.waitForFunction(() => window.embody.selection().length === 1);
     const [pasted] = await selection();
     assert.equal((await entity(pasted)).model, (await bounds(pasted)).model);
     await page.keyboard.press("Control+x");
@@ -171,8 +174,10 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.down({ button: "middle" });
     await page.mouse.move(seen.x + 30, seen.y - 200, { steps: 3 });
     await page.mouse.up({ button: "middle" });
+    // Long enough for a text to come from the clipboard.
     await page.waitForTimeout(800);
-    await drawn(4);
+    await allDone(page);
+    assert.equal((await entities()).length, 4);
     assert.equal(await page.locator("[data-testid^=toast-]").getByText("clipboard").count(), 0);
   });
 
@@ -184,10 +189,11 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.click(at.x, at.y, { button: "right" });
     const menu = page.getByTestId("context-menu");
     await menu.waitFor();
-    await page.waitForTimeout(200);
     await picture("menu");
     await page.getByTestId("menu.edit.duplicate").click();
     await drawn(7);
+    // The copy is selected when the answer has come, after the event that draws it; until then the first one is.
+    await page.waitForFunction((first) => window.embody.selection().length === 1 && window.embody.selection()[0] !== first, boxes[0]);
     await page.keyboard.press("Backspace");
     await drawn(6);
     await page.mouse.click(at.x, at.y);
@@ -199,7 +205,7 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.waitForFunction((index) => Math.abs(window.embody.entities().find((each) => each.index === index).rotation[1]) > 0.1, boxes[0]);
     await page.getByLabel("Position x").fill("+=0.5");
     await page.getByLabel("Position x").press("Enter");
-    await page.waitForTimeout(500);
+    await page.waitForFunction(([index, x]) => window.embody.entities().find((each) => each.index === index).position[0] > x + 0.4, [boxes[0], start[0]]);
     const moved = (await entity(boxes[0])).position;
     assert.ok(Math.abs(moved[0] - start[0] - 0.5) < 0.03, `${start} became ${moved}`);
     await page.getByTestId("canvas").focus();
@@ -242,13 +248,18 @@ describe("building in a room", { timeout: 900000 }, () => {
     await page.mouse.click(first.x, first.y);
     assert.deepEqual((await selection()).sort(), boxes.slice(0, 2));
     assert.match(await page.getByTestId("group-hint").textContent(), /Group “Group”.*Alt/, "how to select one of them is said");
-    const before = [await entity(boxes[0]), await entity(boxes[1])];
+    const both = async () => (await entities()).filter(({ index }) => boxes.slice(0, 2).includes(index));
+    const before = await both();
     await drag(first, { x: first.x + 60, y: first.y + 60 });
-    const after = [await entity(boxes[0]), await entity(boxes[1])];
+    // The page shows them where the server has them.
+    const { pose } = await bounds(boxes[0]);
+    await page.waitForFunction(([index, place]) => Math.hypot(...window.embody.entities().find((each) => each.index === index).position.map((each, axis) => each - place[axis])) < 1e-4, [boxes[0], pose.position]);
+    const after = await both();
     const shift = (at) => after[at].position.map((each, axis) => each - before[at].position[axis]);
     assert.ok(Math.hypot(...shift(0)) > 0.1, "the group has moved");
     shift(0).forEach((each, axis) => assert.ok(Math.abs(each - shift(1)[axis]) < 1e-3, "both by the same"));
-    // The third comes into the group by a drag in the tree.
+    // The third comes into the group by a drag in the tree, which is filled anew after an edit.
+    await settled(page);
     await page.locator(`[data-testid=hierarchy] [data-index="${boxes[2]}"]`).dragTo(page.locator('[data-group="Group"]'));
     await page.waitForFunction(() => document.querySelector('[data-group="Group"] .row-kind')?.textContent === "3");
     await picture("groups");
@@ -259,8 +270,7 @@ describe("building in a room", { timeout: 900000 }, () => {
   });
 
   it("finds models like one of the browser", async () => {
-    await page.getByTestId("search").fill("chair");
-    await page.waitForFunction(() => document.querySelector("[data-testid=model-tile]")?.getAttribute("aria-label")?.toLowerCase().includes("chair"));
+    await searchFor(page, "chair");
     const tile = page.getByTestId("model-tile").first();
     const key = await tile.getAttribute("data-key");
     await tile.click({ button: "right" });
@@ -280,7 +290,7 @@ describe("building in a room", { timeout: 900000 }, () => {
     await drag(wall, { x: wall.x + 80, y: wall.y });
     const after = await project(0, 0, 0);
     assert.ok(Math.hypot(after.x - before.x, after.y - before.y) > 5, "the view has turned");
-    assert.ok((await page.evaluate(() => window.embody.frames())) > count);
+    await page.waitForFunction((count) => window.embody.frames() > count, count);
     const { scene } = await session.command("hello");
     assert.deepEqual(scene.entities[1].pose.position, ROOM.entities[1].pose.position, "the wall has not moved");
     assert.deepEqual(page.faults, []);

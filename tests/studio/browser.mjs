@@ -25,7 +25,7 @@ const FLAGS = [
 export async function openBrowser(more = []) {
   const executablePath = PROGRAMS.find((program) => program && existsSync(program));
   if (!executablePath) throw new Error("no Chromium found: install the package chromium or set EMBODY_CHROMIUM");
-  return chromium.launch({ executablePath, args: [...FLAGS, ...more], headless: true });
+  return chromium.launch({ executablePath, args: [...FLAGS, ...more], headless: true, timeout: 120000 });
 }
 
 /** A connected page of the Studio, with its models drawn. Errors of the page fail the test through `faults`. */
@@ -46,6 +46,27 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   return page;
 }
 
+/** Waits until the pictures that the page has asked for are drawn. */
+export function pictured(page) {
+  return page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => drawn())));
+}
+
+/** Waits until the page draws nothing new: all has come, nothing moves, and the last picture was drawn finely. */
+export async function atRest(page) {
+  const rests = await page.evaluate(async () => {
+    const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+    for (const end = performance.now() + 60000; performance.now() < end; ) {
+      const drawn = window.embody.frames();
+      // A still picture is drawn finely after 400 ms.
+      await wait(600);
+      await new Promise((drawn) => requestAnimationFrame(() => drawn()));
+      if (window.embody.frames() === drawn && window.embody.loading() === 0) return true;
+    }
+    return false;
+  });
+  if (!rests) throw new Error("the page goes on drawing");
+}
+
 /** Takes a screenshot; drawing is stopped meanwhile, because a page that always draws may never be still. */
 export async function takePicture(page, path) {
   await page.waitForTimeout(300);
@@ -59,7 +80,8 @@ export async function pictureOfScene(page) {
   // Without the ring around the focused element.
   await page.evaluate(() => document.activeElement?.blur());
   await page.evaluate(() => window.embody.showPeople(false));
-  await page.waitForTimeout(500);
+  await page.evaluate(() => window.embody.caughtUp());
+  await atRest(page);
   await page.evaluate(() => window.embody.halt());
   // And without messages that lie over it. The page's policy allows no style element, but a sheet that a script makes.
   await page.evaluate(() => {

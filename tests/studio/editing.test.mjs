@@ -2,7 +2,7 @@
 // Several things edited at once, values that can be read and typed again, and locks: the real server, a real browser.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
-import { Session } from "./session.mjs";
+import { allDone, Session, until as untilFits } from "./session.mjs";
 
 const FLOOR = { index: 1, name: "Floor", shape: { type: "box", half_extents: [10, 0.1, 10] }, pose: { position: [0, -0.1, 0] }, attributes: { kind: "static" } };
 const turned = (degrees) => [0, Math.sin((degrees * Math.PI) / 360), 0, Math.cos((degrees * Math.PI) / 360)];
@@ -36,6 +36,8 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
   const row = (index) => page.locator(`[data-testid=hierarchy] [data-index="${index}"]`);
   async function choose(...indices) {
     for (const [at, index] of indices.entries()) await row(index).click(at > 0 ? { modifiers: ["Control"] } : {});
+    // Until their values have come, those of the first one alone are shown.
+    await allDone(page);
   }
   const scene = async () => (await session.command("hello")).scene;
   const entity = async (index) => (await scene()).entities.find((each) => each.index === index);
@@ -46,14 +48,7 @@ describe("edits of several things in the Studio", { timeout: 900000 }, () => {
     await label(name).press("Enter");
   }
   // What the document has once a check holds; the page and the server hear of an edit one after the other.
-  async function until(check, message) {
-    for (let trial = 0; trial < 100; ++trial) {
-      const found = await scene();
-      if (check(found.entities)) return found.entities;
-      await page.waitForTimeout(50);
-    }
-    assert.fail(message);
-  }
+  const until = (check, message) => untilFits(async () => (await scene()).entities, check, message);
   const three = (entities) => THREE.map((index) => entities.find((each) => each.index === index));
   const near = (a, b) => Math.abs(a - b) < 1e-6;
 

@@ -12,14 +12,14 @@ const PLACE = "http://film.invalid";
 
 /**
  * Plays a WebM file: its length and size, and of the pictures at `times` (s) the mean light, the number of red pixels, their mean row, and a coarse
- * gray copy of 32 × 18. Pictures are also written to `folder`, where one is given.
+ * gray copy of 32 × 18. Pictures are also written to `folder`, where one is given. A picture of the film lasts so long at most, s.
  */
-export async function playFilm(browser, path, times, folder = null) {
+export async function playFilm(browser, path, times, folder = null, longest = 0.1) {
   const page = await browser.newPage();
   await page.route(`${PLACE}/**`, (route) => (route.request().url().endsWith(".webm") ? route.fulfill({ path, contentType: "video/webm" }) : route.fulfill({ body: "<!doctype html>", contentType: "text/html" })));
   await page.goto(`${PLACE}/`);
   const film = await page.evaluate(
-    async ([address, times, withFiles]) => {
+    async ([address, times, withFiles, longest]) => {
       const video = document.createElement("video");
       video.muted = true;
       video.src = URL.createObjectURL(await (await fetch(address)).blob());
@@ -29,11 +29,16 @@ export async function playFilm(browser, path, times, folder = null) {
       const small = new OffscreenCanvas(32, 18).getContext("2d", { willReadFrequently: true });
       const pictures = [];
       for (const time of times) {
-        // The picture may come after the seek has ended.
-        const shown = new Promise((done) => video.requestVideoFrameCallback(done));
-        video.currentTime = Math.min(time, video.duration - 0.01);
+        // The picture may come after the seek has ended, and after one that was still on its way.
+        const wanted = Math.min(time, video.duration - 0.01);
+        const shown = new Promise((done) => {
+          const look = (_, { mediaTime }) => (mediaTime < wanted + 0.02 && mediaTime > wanted - longest ? done() : video.requestVideoFrameCallback(look));
+          video.requestVideoFrameCallback(look);
+        });
+        video.currentTime = wanted;
         await new Promise((done) => (video.onseeked = done));
-        await Promise.race([shown, new Promise((done) => setTimeout(done, 300))]);
+        // None comes where the same picture is shown as before.
+        await Promise.race([shown, new Promise((done) => setTimeout(done, 5000))]);
         pen.drawImage(video, 0, 0);
         const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
         let light = 0, red = 0, row = 0;
@@ -49,7 +54,7 @@ export async function playFilm(browser, path, times, folder = null) {
       }
       return { duration: video.duration, width: video.videoWidth, height: video.videoHeight, pictures };
     },
-    [`${PLACE}/film.webm`, times, folder !== null],
+    [`${PLACE}/film.webm`, times, folder !== null, longest],
   );
   await page.close();
   for (const { time, file } of film.pictures) if (file) writeFileSync(join(folder, `film-${time.toFixed(1).padStart(5, "0")}.png`), Buffer.from(file));

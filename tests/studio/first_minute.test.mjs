@@ -6,7 +6,7 @@ import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { after, afterEach, before, describe, it } from "node:test";
 import { fileURLToPath } from "node:url";
-import { openStudio, takePicture } from "./browser.mjs";
+import { openStudio, pictured, takePicture } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
@@ -133,9 +133,8 @@ describe("the first minute", { timeout: 600000 }, () => {
     await page.locator('[data-testid=hierarchy] [data-index="2"]').click();
     await page.getByTestId("canvas").focus();
     const before = distance(await camera());
-    const frames = await page.evaluate(() => window.embody.frames());
     await page.keyboard.press("f");
-    await page.waitForFunction((frames) => window.embody.frames() > frames, frames);
+    await pictured(page);
     const first = await camera();
     await page.waitForTimeout(600);
     assert.deepEqual(await camera(), first, "it is there with the first picture");

@@ -2,7 +2,7 @@
 // Liquids in the Studio: drawn as one surface, flowing apart, selected, changed, and offered as primitives.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
-import { difference, openStudio, pictureOfScene } from "./browser.mjs";
+import { atRest, difference, openStudio, pictureOfScene } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const WATER = 2;
@@ -36,9 +36,9 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
 
   const command = (name, params) => session.command(name, params);
   // The worker makes the surface, so it arrives some time after the points.
-  async function surface() {
-    await page.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
-    return page.evaluate((water) => window.embody.points(water), WATER);
+  async function surface(of = page) {
+    await of.waitForFunction((water) => window.embody.points(water)?.triangles > 100 && window.embody.points(water).settled, WATER);
+    return of.evaluate((water) => window.embody.points(water), WATER);
   }
 
   it("draws one surface that runs apart, and is as it was after a reset", async () => {
@@ -67,16 +67,17 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     const seen = await page.evaluate((index) => window.embody.seenAt(index), WATER);
     await page.mouse.click(seen.x, seen.y);
     await page.waitForFunction((index) => window.embody.selection()[0] === index, WATER);
-    await page.waitForTimeout(500);
+    await atRest(page);
     await page.keyboard.press("Escape");
     await page.waitForFunction(() => window.embody.selection().length === 0);
-    await page.waitForTimeout(500);
+    await atRest(page);
     await command("simulation.step", { count: 20 });
     await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.13, WATER);
+    await surface();
     const drawn = await pictureOfScene(page);
     // Another page that connects now sees the same.
     const other = await openStudio(session.browser, session.address);
-    await other.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
+    await surface(other);
     const share = await difference(page, drawn, await pictureOfScene(other));
     await other.context().close();
     assert.ok(share < 0.002, `${share} of the pixels differ`);

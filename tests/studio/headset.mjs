@@ -76,7 +76,8 @@ export class Headset {
 
   async enter(button = "enter-vr") {
     await this.page.getByTestId(button).click();
-    await this.page.waitForFunction(() => window.embody.vr.running(), null, { timeout: 120000 });
+    // Until the device asks for pictures those that are drawn are the page's own.
+    await this.page.waitForFunction(() => window.embody.vr.running() && window.embody.vr.foveation() !== undefined, null, { timeout: 120000 });
     await this.frames(4);
   }
 
@@ -89,6 +90,14 @@ export class Headset {
   async frames(count = 3) {
     const now = await this.page.evaluate(() => window.embody.frames());
     await this.page.waitForFunction((until) => window.embody.frames() >= until, now + count, { timeout: 180000 });
+  }
+
+  /** Waits until the Studio has counted so many seconds: of a picture that took longer it counts a tenth. */
+  async seconds(count) {
+    for (let tenth = 0; tenth <= 10 * count; ++tenth) {
+      await this.page.waitForTimeout(100);
+      await this.frames(1);
+    }
   }
 
   stance() {
@@ -186,7 +195,7 @@ export class Headset {
 
   /** A widget that is shown, by its id. */
   async widget(id) {
-    await this.page.waitForFunction((id) => window.embody.vr.widgets().some((each) => each.id === id), id, { timeout: 15000 });
+    await this.page.waitForFunction((id) => window.embody.vr.widgets().some((each) => each.id === id), id, { timeout: 60000 });
     return (await this.widgets()).find((each) => each.id === id);
   }
 

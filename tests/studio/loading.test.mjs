@@ -2,7 +2,7 @@
 // Large scenes and many commands at once: the real server, the real furniture catalogue, a real browser.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
-import { Session } from "./session.mjs";
+import { Session, until } from "./session.mjs";
 
 const FLOOR = { index: 1, name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" }, locked: true };
 const EMPTY = { embody_scene: 1, title: "Empty", entities: [FLOOR] };
@@ -88,18 +88,11 @@ describe("large scenes in the Studio", { timeout: 900000 }, () => {
     await page.getByText("Start and forces").click();
     await page.getByLabel("Velocity y", { exact: true }).fill("1.5");
     await page.getByLabel("Velocity y", { exact: true }).press("Enter");
-    for (let trial = 0, changed = 0; changed < BOXES; ++trial) {
-      assert.ok(trial < 200, `${changed} of ${BOXES} have the velocity`);
-      await page.waitForTimeout(100);
-      changed = (await session.command("hello")).scene.entities.filter(({ linear_velocity }) => linear_velocity?.[1] === 1.5).length;
-    }
+    const changed = async () => (await session.command("hello")).scene.entities.filter(({ linear_velocity }) => linear_velocity?.[1] === 1.5).length;
+    await until(changed, (count) => count === BOXES, `of ${BOXES} so many have the velocity`);
     assert.ok(await page.evaluate(() => window.embody.connected()));
     await page.getByTestId("canvas").focus();
     await page.keyboard.press("Control+z");
-    for (let trial = 0, left = BOXES; left > 0; ++trial) {
-      assert.ok(trial < 200, "one undo takes back all");
-      await page.waitForTimeout(100);
-      left = (await session.command("hello")).scene.entities.filter(({ linear_velocity }) => linear_velocity?.[1] === 1.5).length;
-    }
+    await until(changed, (count) => count === 0, "one undo takes back all");
   });
 });

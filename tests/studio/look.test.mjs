@@ -2,7 +2,7 @@
 // How the scene looks: levels of detail beside full detail, what is picked then, contact shadows, sky, lamps, finishes.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { brightness, difference, pictureOfScene } from "./browser.mjs";
+import { brightness, difference, pictured, pictureOfScene } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const session = new Session();
@@ -20,7 +20,8 @@ async function heavyModels(count) {
 async function open(entities, camera, options) {
   await session.command("scene.load", { scene: { embody_scene: 1, title: "Look", camera, entities: [floor, ...entities] } });
   const page = await session.reopen(options);
-  await page.waitForFunction((count) => window.embody.entities().filter(({ drawn }) => drawn).length === count, entities.length + 1);
+  await page.waitForFunction((count) => window.embody.entities().filter(({ drawn }) => drawn).length === count, entities.length + 1, { timeout: 120000 });
+  await pictured(page);
   return page;
 }
 

@@ -378,7 +378,7 @@ try {
   const length = await joinFilms(parts, file);
   say(`joined: ${length.toFixed(1)} s`);
   const stills = Array.from({ length: 60 }, (_, at) => ((at + 0.5) * length) / 60);
-  const film = await playFilm(browser, file, stills, folder);
+  const film = await playFilm(browser, file, stills, folder, 1.1);
   const { size } = statSync(file);
   assert.deepEqual([film.width, film.height], [WIDTH, HEIGHT]);
   assert.ok(Math.abs(film.duration - length) < 1, `a browser plays ${film.duration} s`);

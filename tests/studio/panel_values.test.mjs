@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
 import { takePicture } from "./browser.mjs";
-import { Session } from "./session.mjs";
+import { allDone, Session, until } from "./session.mjs";
 
 const box = (index, name, x) => ({ index, name, shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [x, 0.2, 0] } });
 const ROOM = {
@@ -39,21 +39,14 @@ describe("values in the Studio's panel", { timeout: 900000 }, () => {
   async function choose(...indices) {
     for (const [at, index] of indices.entries()) await listed(index).click(at > 0 ? { modifiers: ["Control"] } : {});
     await field("mass").waitFor();
+    // Until their values have come, those of the last choice are shown.
+    await allDone(page);
   }
   async function type(name, text) {
     await field(name).fill(text);
     await field(name).press("Enter");
   }
   const own = async (index) => (await session.command("hello")).scene.entities.find((each) => each.index === index)?.attributes ?? {};
-  async function until(read, fits, message) {
-    let last;
-    for (let trial = 0; trial < 200; ++trial) {
-      last = await read();
-      if (fits(last)) return last;
-      await page.waitForTimeout(50);
-    }
-    assert.fail(`${message}: ${JSON.stringify(last)}`);
-  }
   const shown = (name, value) => page.waitForFunction(([name, value]) => document.querySelector(`[data-testid=attribute-${name}] :is(input, select)`)?.value === value, [name, value]);
 
   it("shows what matters first, and folds the rest until it is opened", async () => {
@@ -224,7 +217,8 @@ describe("values in the Studio's panel", { timeout: 900000 }, () => {
     await page.waitForFunction((count) => window.embody.entities().length === count, ROOM.entities.length + 7);
     const xs = (await session.command("hello")).scene.entities.slice(4).map(({ pose }) => Math.round(100 * pose.position[0]) / 100);
     assert.deepEqual(new Set(xs), new Set([-1, -0.5, 0, 0.5]));
-    assert.equal((await page.evaluate(() => window.embody.selection())).length, 8);
+    // They are selected when the answer has come, after the event that draws them.
+    await page.waitForFunction(() => window.embody.selection().length === 8);
   });
 
   it("turns by the wheel with R held, and leaves locked things where they are", async () => {

@@ -2,8 +2,8 @@
 // Two people in one scene: the real server, two pages of a real browser.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
-import { openStudio } from "./browser.mjs";
-import { Session } from "./session.mjs";
+import { atRest, openStudio } from "./browser.mjs";
+import { allDone, Session } from "./session.mjs";
 
 const FLOOR = { index: 1, name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" }, locked: true };
 const box = (index, x) => ({ index, name: `Box ${index}`, shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [x, 0.2, 0] } });
@@ -24,8 +24,11 @@ describe("people in a session", { timeout: 900000 }, () => {
     ann = session.page = await open("Ann");
     await session.command("scene.load", { scene: ROOM });
     ben = await open("Ben Smith");
-    await ann.waitForFunction(() => window.embody.people().others.some(({ name }) => name === "Ben Smith"));
-    await ben.waitForFunction(() => window.embody.people().others.some(({ name }) => name === "Ann"));
+    // Alone: pages of the test before may leave a moment later.
+    for (const [page, other] of [[ann, "Ben Smith"], [ben, "Ann"]])
+      await page.waitForFunction((other) => window.embody.people().others.length === 1 && window.embody.people().others[0].name === other, other);
+    // Each knows its own name, too.
+    for (const page of [ann, ben]) await allDone(page);
   });
   afterEach(async () => {
     for (const page of [ann, ben]) assert.deepEqual(page.faults, []);
@@ -89,7 +92,7 @@ describe("people in a session", { timeout: 900000 }, () => {
         [picture.toString("base64"), color],
       );
     const shot = async () => {
-      await ann.waitForTimeout(600);
+      await atRest(ann);
       await ann.evaluate(() => window.embody.halt());
       const picture = await ann.screenshot({ clip: { x: at.x - 60, y: at.y - 60, width: 120, height: 120 } });
       await ann.evaluate(() => window.embody.resume());
@@ -132,8 +135,8 @@ describe("people in a session", { timeout: 900000 }, () => {
     const received = () => ann.evaluate((client) => window.received.filter((each) => each.client === client), client);
     const forget = () => ann.evaluate(() => void (window.received.length = 0));
     await ben.waitForFunction(() => window.embody.people().others.length === 2);
-    await ann.waitForTimeout(500);
     await forget();
+    const still = JSON.stringify(await ben.evaluate(() => window.embody.camera()));
     const canvas = await ben.getByTestId("canvas").boundingBox();
     const begun = Date.now();
     await ben.mouse.move(canvas.x + 30, canvas.y + 30);
@@ -144,9 +147,19 @@ describe("people in a session", { timeout: 900000 }, () => {
       await ben.waitForTimeout(20);
     }
     await ben.mouse.up();
-    await ann.waitForTimeout(500);
-    const told = await received();
+    const seen = await ben.evaluate(() => window.embody.camera());
+    // The server tells the last place within a second.
+    await ann.waitForFunction(
+      ([client, place]) => {
+        const last = window.received.findLast((each) => each.client === client && "camera" in each);
+        return last && Math.hypot(...last.camera.position.map((each, axis) => each - place[axis])) < 1e-3;
+      },
+      [client, seen.position],
+    );
+    const all = await received();
     const seconds = (Date.now() - begun) / 1000;
+    // Who is new is told everything, before the first move or with it.
+    const told = all.slice(all.findIndex(({ camera }) => camera && JSON.stringify(camera) !== still) + 1);
     assert.ok(told.filter((each) => "camera" in each).length > 2, "the camera is told while it moves");
     assert.ok(told.length <= 15 * seconds + 2, `${told.length} messages in ${seconds} s`);
     assert.ok(told.every((each) => !("selection" in each) && !("mode" in each)), "what has not changed is not sent again");
@@ -217,6 +230,8 @@ describe("people in a session", { timeout: 900000 }, () => {
     await ann.waitForFunction(() => window.embody?.connected());
     assert.equal(await person(), before);
     await ann.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
+    // The page before may let go of the person a little later.
+    await ann.waitForFunction(async (person) => (await navigator.locks.query()).held.some(({ name }) => name.endsWith(person)), before);
     const second = await ann.context().newPage();
     await second.goto(session.address);
     await second.waitForFunction(() => window.embody?.connected());
@@ -226,15 +241,17 @@ describe("people in a session", { timeout: 900000 }, () => {
   });
 
   it("asks the others before another scene is opened, and cancels", async () => {
-    await ann.getByTestId("scene.new").click();
     const question = ben.getByTestId("card-question");
+    // What the card says first: the seconds run while the test looks.
+    const first = ben.waitForFunction(() => document.querySelector("[data-testid=question-seconds]")?.textContent);
+    await ann.getByTestId("scene.new").click();
     await question.waitFor();
     assert.match(await question.innerText(), /Ann would like to open/);
-    assert.match(await question.getByTestId("question-seconds").innerText(), /^(20|19|18|17) s$/);
+    assert.match(await (await first).jsonValue(), /^(20|19|18|17) s$/);
     assert.match(await ann.getByTestId("card-waiting").innerText(), /Waiting for Ben Smith/);
 
-    await ben.getByTestId("question-refuse").click();
-    await ann.getByText(/Ben Smith would rather go on/).waitFor();
+    // The message goes by itself.
+    await Promise.all([ann.getByText(/Ben Smith would rather go on/).waitFor(), ben.getByTestId("question-refuse").click()]);
     await ann.getByTestId("card-waiting").waitFor({ state: "detached" });
     assert.equal(await ann.evaluate(() => window.embody.entities().length), 3);
 
@@ -268,6 +285,8 @@ describe("people in a session", { timeout: 900000 }, () => {
     await ben.context().close();
     await ann.context().close();
     const alone = (ann = await open(""));
+    // Who left may be gone a moment later.
+    await alone.waitForFunction(() => window.embody.people().others.length === 0);
     await alone.waitForTimeout(300);
     assert.equal(await alone.getByTestId("card-name").count(), 0);
     assert.equal(await alone.locator("[data-testid=people] .person").count(), 0);

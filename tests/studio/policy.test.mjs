@@ -20,7 +20,7 @@ const SCENE = {
   ],
 };
 
-describe("the server's policy for browsers", { timeout: 300000 }, () => {
+describe("the server's policy for browsers", { timeout: 900000 }, () => {
   let server, browser, address;
 
   before(async () => {

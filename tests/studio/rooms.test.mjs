@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { takePicture } from "./browser.mjs";
-import { Session } from "./session.mjs";
+import { allDone, Session, until } from "./session.mjs";
 
 const GROUND = {
   embody_scene: 1,
@@ -112,16 +112,15 @@ describe("rooms", { timeout: 600000 }, () => {
     await choose("window");
     await click(0, 1.5, -1.44);
     const back = async () => (await shapes("wall")).find(({ shape }) => shape.openings?.length);
-    const until = (test) => page.waitForFunction(test);
-    await until(() => document.querySelector('[data-testid="properties"]') && window.embody.selection().length === 1);
-    let wall = await back();
+    // The wall is selected at once; the server has the window when it has answered.
+    await page.waitForFunction(() => window.embody.selection().length === 1);
+    const wall = await until(back, Boolean, "a wall with a window");
     assert.equal(wall.shape.openings[0].kind, "window");
     near(wall.shape.openings[0].offset, 1.4, 0.1);
     await choose("door");
     await click(1.99, 1, 0);
     const doors = async () => (await shapes("wall")).flatMap(({ shape }) => shape.openings ?? []).filter(({ kind }) => kind === "door");
-    for (let tries = 0; tries < 100 && (await doors()).length === 0; ++tries) await page.waitForTimeout(100);
-    const [{ sill, height }] = await doors();
+    const [{ sill, height }] = await until(doors, ({ length }) => length === 1, "a door");
     assert.deepEqual([sill, height], [0, 2.1]);
     await leave();
     await picture("room-openings");
@@ -140,11 +139,11 @@ describe("rooms", { timeout: 600000 }, () => {
     await page.mouse.down();
     await page.mouse.move(to.x, to.y, { steps: 4 });
     await page.mouse.up();
-    const isMoved = async () => Math.abs((await back()).shape.openings[0].offset - 2.2) < 0.12;
-    for (let tries = 0; tries < 100 && !(await isMoved()); ++tries) await page.waitForTimeout(100);
-    assert.ok(await isMoved(), `the window is at ${(await back()).shape.openings[0].offset}`);
+    // The last place is sent when the one before has been answered.
+    await allDone(page);
+    near((await back()).shape.openings[0].offset, 2.2, 0.12);
     await page.keyboard.press("Control+z");
-    for (let tries = 0; tries < 100 && (await isMoved()); ++tries) await page.waitForTimeout(100);
+    await allDone(page);
     near((await back()).shape.openings[0].offset, 1.4, 0.1);
     assert.deepEqual(page.faults, []);
   });

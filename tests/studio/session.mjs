@@ -7,10 +7,13 @@ import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
 /** Commands that the page would be asked about, were they not told to go ahead. */
 const ASKING = ["scene.load", "scene.new"];
 
-/** Runs a command of docs/protocol.md as another client of the page's server; returns its result, or an error with the refusal. */
-export function commandFrom(page, name, params = {}) {
+/**
+ * Runs a command of docs/protocol.md as another client of the page's server, and waits until all pages of the browser have heard
+ * of what it did: a test that goes on before would find the old scene. Returns the command's result, or an error with the refusal.
+ */
+export async function commandFrom(page, name, params = {}) {
   const told = ASKING.includes(name) ? { ask: false, ...params } : params;
-  return page.evaluate(
+  const result = await page.evaluate(
     async ([command, params]) => {
       const socket = new WebSocket(`ws://${location.host}/ws`);
       await new Promise((opened) => (socket.onopen = opened));
@@ -24,6 +27,48 @@ export function commandFrom(page, name, params = {}) {
     },
     [name, told],
   );
+  const pages = page.context().browser().contexts().flatMap((context) => context.pages());
+  await Promise.all(pages.map((each) => each.evaluate(() => window.embody?.connected() && window.embody.caughtUp())));
+  return result;
+}
+
+/** Waits until the server has carried out all that the page asks of it, also what the page sends only after an answer, such as the last place of a drag. */
+export function allDone(page) {
+  return page.evaluate(async () => {
+    for (let round = 0; round < 4; ++round) await window.embody.caughtUp();
+  });
+}
+
+/**
+ * The same, and until the panels show what came of it: after an edit the page fills the list of things anew (80 ms), asks for
+ * warnings (250 ms), and for values after these (60 ms). Timers of a page end in their order, however slow it is.
+ */
+export function settled(page) {
+  return page.evaluate(async () => {
+    for (const ms of [0, 0, 300, 100, 0]) {
+      await window.embody.caughtUp();
+      await new Promise((done) => setTimeout(done, ms));
+    }
+  });
+}
+
+/** Searches for models, and waits until the tiles are those of this search. */
+export async function searchFor(page, words) {
+  await page.getByTestId("search").fill(words);
+  await page.waitForFunction((word) => {
+    const grid = document.querySelector("[data-testid=model-grid]");
+    return grid.getAttribute("aria-busy") === "false" && grid.querySelector("[data-testid=model-tile]")?.getAttribute("aria-label")?.toLowerCase().includes(word);
+  }, words);
+}
+
+/** Reads again and again until it fits, as long as Playwright waits for a page; the last that was read. */
+export async function until(read, fits, message) {
+  let last;
+  for (const begun = Date.now(); Date.now() - begun < 30000; await new Promise((done) => setTimeout(done, 50))) {
+    last = await read();
+    if (fits(last)) return last;
+  }
+  assert.fail(`${message}: ${JSON.stringify(last)}`);
 }
 
 /** One server and one browser for all tests of a suite. */

@@ -229,7 +229,11 @@ export class User {
       const at = await this.project(point);
       const shift = { x: x + width / 2 - at.x, y: y + height / 2 - at.y };
       if (Math.hypot(shift.x, shift.y) < 3) break;
-      await this.dragBy(shift, times === 0 ? steps : 6, fixed, "middle");
+      // What is as far as the camera's target follows the pointer; what is nearer goes farther.
+      const camera = await this.page.evaluate(() => window.embody.camera());
+      const arm = new Vector3(...camera.target).sub(new Vector3(...camera.position));
+      const depth = arm.dot(new Vector3(...point).sub(new Vector3(...camera.position))) / arm.lengthSq();
+      await this.dragBy({ x: shift.x * depth, y: shift.y * depth }, times === 0 ? steps : 6, fixed, "middle");
     }
   }
 
