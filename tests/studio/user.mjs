@@ -206,6 +206,9 @@ export class User {
     const tooFar = new Vector3(...target).distanceTo(new Vector3(...seen.position)) - wanted.radius;
     const notches = Math.log(Math.max(arm - tooFar, 0.3) / arm) / Math.log(ZOOM_PER_NOTCH);
     const count = Math.max(1, Math.ceil(Math.abs(notches) * 3));
+    // The last drag may have ended beside the picture.
+    const { x, y, width, height } = await this.canvas();
+    await this.glide({ x: x + width / 2, y: y + height / 2 }, { steps: 6 });
     for (let at = 0; at < count && Math.abs(notches) > 0.1; ++at) {
       const frames = await this.page.evaluate(() => window.embody.frames());
       await this.page.mouse.wheel(0, (notches / count) * 100);
