@@ -111,7 +111,7 @@ describe("the Studio's panels", { timeout: 900000 }, () => {
     await page.mouse.down();
     for (let step = 1; step <= 8; ++step) await page.mouse.move(before.x + 10 * step, before.y - 2 * step);
     await page.mouse.up();
-    // The last place is sent when the one before has been answered.
+    // The mock has the last place once it has answered.
     await allDone(page);
     await page.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
     const moved = mock.entity(CRATE).pose.position;

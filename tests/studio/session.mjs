@@ -32,7 +32,7 @@ export async function commandFrom(page, name, params = {}) {
   return result;
 }
 
-/** Waits until the server has carried out all that the page asks of it, also what the page sends only after an answer, such as the last place of a drag. */
+/** Waits until the server has carried out all that the page asks of it, also what the page sends only after an answer. */
 export function allDone(page) {
   return page.evaluate(async () => {
     for (let round = 0; round < 4; ++round) await window.embody.caughtUp();
