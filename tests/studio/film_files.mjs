@@ -27,6 +27,13 @@ export async function playFilm(browser, path, times, folder = null, longest = 0.
       const canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
       const pen = canvas.getContext("2d", { willReadFrequently: true });
       const small = new OffscreenCanvas(32, 18).getContext("2d", { willReadFrequently: true });
+      // As text: a list of numbers takes a hundred times its bytes on its way out of the page.
+      const fileOf = async () => {
+        const reader = new FileReader();
+        reader.readAsDataURL(await canvas.convertToBlob({ type: "image/png" }));
+        await new Promise((done) => (reader.onload = done));
+        return reader.result.split(",")[1];
+      };
       const pictures = [];
       for (const time of times) {
         // The picture may come after the seek has ended, and after one that was still on its way.
@@ -49,7 +56,7 @@ export async function playFilm(browser, path, times, folder = null, longest = 0.
         small.drawImage(canvas, 0, 0, 32, 18);
         const coarse = small.getImageData(0, 0, 32, 18).data;
         const gray = Array.from({ length: 32 * 18 }, (_, at) => Math.round((coarse[4 * at] + coarse[4 * at + 1] + coarse[4 * at + 2]) / 3));
-        const file = withFiles ? [...new Uint8Array(await (await canvas.convertToBlob({ type: "image/png" })).arrayBuffer())] : null;
+        const file = withFiles ? await fileOf() : null;
         pictures.push({ time, light: light / (data.length / 4) / 3, red, row: row / Math.max(red, 1), gray, file });
       }
       return { duration: video.duration, width: video.videoWidth, height: video.videoHeight, pictures };
@@ -57,7 +64,7 @@ export async function playFilm(browser, path, times, folder = null, longest = 0.
     [`${PLACE}/film.webm`, times, folder !== null, longest],
   );
   await page.close();
-  for (const { time, file } of film.pictures) if (file) writeFileSync(join(folder, `film-${time.toFixed(1).padStart(5, "0")}.png`), Buffer.from(file));
+  for (const { time, file } of film.pictures) if (file) writeFileSync(join(folder, `film-${time.toFixed(1).padStart(5, "0")}.png`), Buffer.from(file, "base64"));
   return film;
 }
 
