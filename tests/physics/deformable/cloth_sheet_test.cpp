@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/deformable/deformable_scene.h"
@@ -206,6 +207,40 @@ TEST(ClothSheet, TableclothFallsOverATableAndStays) {
     EXPECT_LT(drift, 5e-3);
     EXPECT_NEAR(lowest, 0.7 - 0.2, 0.12);  // corners hang lower than the borders' 0.2 m
     EXPECT_LT(deepest, 2e-3);
+}
+
+TEST(ClothSheet, FacesThatLeaveItNoRoomPushItNoHarderFromStepToStep) {
+    // Two faces come nearer to each other than a sheet is thick: none of its contacts can give way.
+    std::mt19937 engine(7);
+    const auto chance = [&](double low, double high) { return std::uniform_real_distribution(low, high)(engine); };
+    for (int round = 0; round < 20; ++round) {
+        SCOPED_TRACE(round);
+        auto definition = cloth_rectangle(0.2, 0.2, 0.04, {.area_density = chance(0.1, 2)});
+        const double radius = definition.contact_radius, speed = chance(0.05, 1), tilt = chance(0, 0.3);
+        definition.pose.position = {0, radius, 0};
+        Scene scene(definition);
+        const double friction = chance(0, 1);
+        LooseBody floor(PlaneShape{{0, 1, 0}, 0}, {}, friction);
+        LooseBody press(PlaneShape{{std::sin(tilt), -std::cos(tilt), 0}, 0}, {{0, 0.05, 0}, {}}, friction);
+        scene.bodies = {floor.body, press.body};
+        for (std::uint32_t b = 0; b < 2; ++b) scene.bodies[b].body = b;
+        const auto hardest = [&] {
+            double most = 0;
+            for (const TouchSpring& spring : scene.deformable.springs())
+                most = std::max(most, spring.acts ? length(spring.felt) : 0.0);
+            return most;
+        };
+        scene.bodies[1].path_velocity = {0, -speed, 0};
+        const double room = chance(0.1, 1.8) * radius;
+        scene.run((0.05 - room) / speed);
+        scene.bodies[1].path_velocity = {};
+        scene.run(0.5);
+        const double early = hardest();
+        EXPECT_GT(early, 0);
+        scene.run(3);
+        EXPECT_LE(hardest(), 1.01 * early);
+        EXPECT_LT(scene.fastest(), 0.05);
+    }
 }
 
 TEST(ClothSheet, BallOnAPinnedSheetIsHeldWithItsWholeWeight) {

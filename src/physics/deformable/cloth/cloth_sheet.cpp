@@ -69,7 +69,7 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition)
     springs_.radius = definition.contact_radius;
     springs_.material = definition.material;
     springs_.attachments = definition.attachments;
-    springs_.predicts_slip = true;
+    springs_.predicts_slip = springs_.forgets_depth = true;
     make_pattern(bending_);
     layers_.emplace(cloth_.triangles, definition.nodes);
 }

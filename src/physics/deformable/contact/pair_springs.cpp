@@ -159,7 +159,8 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
-    spring.gap = gap > 0 ? gap : std::max(settings.recovery_fraction * gap, -settings.recovery_speed * h);
+    if (gap < 0) spring.returned = returned_overlap(-gap, h, settings);
+    spring.gap = gap > 0 ? gap : -spring.returned;
     spring.friction = search.friction;
     if (found.memory != nullptr) {
         // Layers that something holds in each other must not push harder and harder: the deeper they are, the more
@@ -250,7 +251,7 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             const Vec3 force = spring.force(s);
             const double push = std::max(0.0, dot(force, spring.normal));
             own.force = force;
-            own.push = std::max(0.0, push + spring.stiffness * std::min(spring.gap, 0.0));
+            own.push = kept_push(spring, push);
             own.carried = std::max(own.push / gravity, start_.settings.load_memory * own.carried);
             own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
             own.sticks = spring.sticks;

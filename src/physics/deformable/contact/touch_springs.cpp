@@ -72,7 +72,9 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange
     }
     sum.acting += std::fabs(push);
     // For a point that was not held back the depth determines the force that stops it, not the force of the spring.
-    const double expected = is_predicted ? push_before : is_new ? push_before + spring.inertia * depth : push;
+    const double expected = is_predicted ? push_before + spring.stiffness * spring.returned
+                            : is_new     ? push_before + spring.inertia * depth
+                                         : push;
     sum.change += choose_friction(spring, s, expected, is_predicted);
     spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
     spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
@@ -88,6 +90,14 @@ Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h) {
 double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings) {
     const double carried = gravity > 0 ? force / gravity : 0;
     return std::max(settings.stiffness_factor * mass, settings.load_stiffness_factor * carried) / (h * h);
+}
+
+double returned_overlap(double overlap, double h, const ThinContactSettings& settings) {
+    return std::min(settings.recovery_fraction * overlap, settings.recovery_speed * h);
+}
+
+double kept_push(const TouchSpring& spring, double push) {
+    return std::max(0.0, push - spring.stiffness * spring.returned);
 }
 
 std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
@@ -214,13 +224,27 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.carried = place.displacement_of(spring.arm) + substep.h * plane.velocity;
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
     const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
+    spring.overlap = std::max(0.0, -gap_at_start);
     const bool is_known = recall(body, settings, spring);
-    if (node_stiffness.empty()) soften(substep, compliance, body.inverse_mass > 0, spring);
+    if (node_stiffness.empty())
+        soften(substep, compliance, body.inverse_mass > 0, spring);
+    else if (forgets_depth)
+        bring_back(substep, spring);
     if (!is_known && gap_at_start < -settings.recovery_speed * substep.h - came_in) {
         if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
         begin_recovery(spring, body, substep.h, settings);
     }
     springs_.push_back(spring);
+}
+
+// An overlap is taken back at a bounded speed; the deeper it is, the less of the force that does so is remembered, and
+// none where the node has gone through for good: what something else holds in there must not be pushed harder and
+// harder.
+void TouchSprings::bring_back(const Substep& substep, TouchSpring& spring) const {
+    const ThinContactSettings& settings = substep.settings.thin_contact;
+    const double returned = std::min(spring.overlap, settings.recovery_speed * substep.h);
+    spring.gap += spring.overlap - returned;
+    spring.returned = std::min(1.0, spring.overlap / (settings.max_wrong_side_radii * radius)) * returned;
 }
 
 // As between sheets (pair_springs.cpp): by its inertia and by that of the load on it. A body's inertia would need
@@ -234,6 +258,38 @@ void TouchSprings::soften(const Substep& substep, double compliance, bool is_wit
         std::max(settings.stiffness_factor * spring.inertia, settings.load_stiffness_factor * carried / squared);
     spring.inertia = 1 / (compliance * squared);
     spring.gap = std::max(spring.gap, -settings.recovery_speed * substep.h);
+}
+
+// Two faces of one body, or of two that do not move, may leave a node less room than it needs, so that neither can give
+// way: the less room, the more force both forget, and they bring the node back at a bounded speed.
+void TouchSprings::forget_contradictions(std::span<const TouchedBody> bodies, const Substep& substep,
+                                         std::size_t node_count) {
+    const ThinContactSettings& settings = substep.settings.thin_contact;
+    constexpr std::uint32_t none = 0xFFFFFFFFu;
+    std::vector<std::uint32_t> last(node_count, none), before(springs_.size(), none);
+    std::vector<double> missing(springs_.size(), 0);  // room
+    const auto stay_together = [&](const TouchSpring& a, const TouchSpring& b) {
+        return a.body == b.body || !(bodies[a.body].inverse_mass > 0 || bodies[b.body].inverse_mass > 0);
+    };
+    for (std::uint32_t i = 0; i < springs_.size(); ++i) {
+        const TouchSpring& spring = springs_[i];
+        if (!(spring.overlap > 0) || spring.is_recovery) continue;
+        for (std::uint32_t k = last[spring.node[0]]; k != none; k = before[k]) {
+            const TouchSpring& other = springs_[k];
+            if (!stay_together(spring, other) || dot(spring.normal, other.normal) >= 0) continue;
+            const double overlap = spring.overlap + other.overlap;
+            missing[i] = std::max(missing[i], overlap);
+            missing[k] = std::max(missing[k], overlap);
+        }
+        before[i] = last[spring.node[0]];
+        last[spring.node[0]] = i;
+    }
+    for (std::uint32_t i = 0; i < springs_.size(); ++i) {
+        if (!(missing[i] > 0)) continue;
+        TouchSpring& spring = springs_[i];
+        const double kept = std::max(0.0, 1 - missing[i] / (settings.memory_depth * radius));
+        spring.pull = kept * spring.pull;
+    }
 }
 
 void TouchSprings::add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
@@ -273,6 +329,7 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
         TouchSpring spring{.node = {contact.node}, .weight = {1}, .feature = {contact.node, no_node}};
         complete(nodes, contact, bodies, substep, node_stiffness, spring);
     }
+    if (forgets_depth) forget_contradictions(bodies, substep, nodes.size());
     for (std::size_t i = 0; i < attachments.size(); ++i) {
         const Attachment& attachment = attachments[i];
         const std::uint32_t b = attachment_bodies[i];
@@ -337,7 +394,7 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
         Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, true, spring.normal, force, {}};
         if (!spring.is_attachment) {
             const double push = std::max(0.0, dot(force, spring.normal));
-            memory.pull = push * spring.normal;
+            memory.pull = kept_push(spring, push) * spring.normal;
             memory.hold =
                 held_stretch(spring, spring.hold + across(s - spring.carried, spring.normal), push, substep.h);
             memory.sticks = spring.sticks;

@@ -73,6 +73,8 @@ struct TouchSpring {
     bool sticks = true;            ///< holds by static friction until its limit is left
     bool predicts_slip = false;    ///< as of TouchSprings
     double gap = 0;                ///< at the end of the substep if the point stays, m
+    double overlap = 0;            ///< at the substep's start, of a contact with a body, m
+    double returned = 0;           ///< part of an overlap that the substep takes back and that is not remembered, m
     Vec3 carried;                  ///< displacement of the body's surface in the substep on its path, m
     double stiffness = 0;          ///< maximum of both directions, N/m
     double inertia = 0;            ///< mass of the point over the substep squared, N/m
@@ -121,13 +123,18 @@ Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
 /// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of the
 /// load on it by `force` (N), in a substep of h seconds. `gravity`: m/s².
 double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings);
+/// Part of an overlap (m) that contacts take back in a substep of h seconds, m.
+double returned_overlap(double overlap, double h, const ThinContactSettings& settings);
+/// What a contact of sheets and ropes remembers of that push, N: not what took back an overlap, so its force follows
+/// how far the two have come into each other since they touched, like that of a spring.
+double kept_push(const TouchSpring& spring, double push);
 /// The part of v along a plane.
 inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 
 /// Contacts and attachments of one deformable as springs with memory. A spring starts with its force of the last
 /// substep, so the force grows until the point no longer moves: with a finite stiffness it acts like a hard contact
-/// (method of multipliers, one iteration a substep; stable from the node's own stiffness on). Friction is a spring
-/// along the plane that slips at Coulomb's limit.
+/// (method of multipliers, one iteration a substep; stable from the node's own stiffness on). What is held inside
+/// something forgets it (forgets_depth). Friction is a spring along the plane that slips at Coulomb's limit.
 class TouchSprings {
 public:
     /// Begins a substep: `radius` and `material` of the deformable; `node_stiffness`: stiffness of the node's
@@ -161,6 +168,9 @@ public:
     /// Expects of a sliding point the further slip that the excess of its friction over the limit would make: for few
     /// solves, where the secant alone comes too slowly to its slip.
     bool predicts_slip = false;
+    /// Remembers the less of a force the deeper its node has come into a body: for sheets. Ropes need all of it: one of
+    /// 100 kg that lies in a light box would go on through it.
+    bool forgets_depth = false;
     std::vector<Attachment> attachments;           ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
@@ -184,6 +194,8 @@ private:
     // inertia and load.
     void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
+    void bring_back(const Substep& substep, TouchSpring& spring) const;
+    void forget_contradictions(std::span<const TouchedBody> bodies, const Substep& substep, std::size_t node_count);
     static void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     // False where the contact is new.
