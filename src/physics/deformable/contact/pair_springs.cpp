@@ -159,8 +159,8 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
-    if (gap < 0) spring.returned = returned_overlap(-gap, h, settings);
-    spring.gap = gap > 0 ? gap : -spring.returned;
+    if (gap < 0) spring.returned = std::min(-settings.recovery_fraction * gap, settings.recovery_speed * h);
+    spring.gap = gap < 0 ? -spring.returned : gap;
     spring.friction = search.friction;
     if (found.memory != nullptr) {
         // Layers that something holds in each other must not push harder and harder: the deeper they are, the more

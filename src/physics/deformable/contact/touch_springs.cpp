@@ -92,10 +92,6 @@ double contact_stiffness(double mass, double force, double h, double gravity, co
     return std::max(settings.stiffness_factor * mass, settings.load_stiffness_factor * carried) / (h * h);
 }
 
-double returned_overlap(double overlap, double h, const ThinContactSettings& settings) {
-    return std::min(settings.recovery_fraction * overlap, settings.recovery_speed * h);
-}
-
 double kept_push(const TouchSpring& spring, double push) {
     return std::max(0.0, push - spring.stiffness * spring.returned);
 }
@@ -261,7 +257,7 @@ void TouchSprings::soften(const Substep& substep, double compliance, bool is_wit
 }
 
 // Two faces of one body, or of two that do not move, may leave a node less room than it needs, so that neither can give
-// way: the less room, the more force both forget, and they bring the node back at a bounded speed.
+// way: the less room, the more force both forget.
 void TouchSprings::forget_contradictions(std::span<const TouchedBody> bodies, const Substep& substep,
                                          std::size_t node_count) {
     const ThinContactSettings& settings = substep.settings.thin_contact;

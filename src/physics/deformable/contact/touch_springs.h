@@ -123,10 +123,7 @@ Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
 /// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of the
 /// load on it by `force` (N), in a substep of h seconds. `gravity`: m/s².
 double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings);
-/// Part of an overlap (m) that contacts take back in a substep of h seconds, m.
-double returned_overlap(double overlap, double h, const ThinContactSettings& settings);
-/// What a contact of sheets and ropes remembers of that push, N: not what took back an overlap, so its force follows
-/// how far the two have come into each other since they touched, like that of a spring.
+/// What a contact remembers of that push, N: all but what `returned` took.
 double kept_push(const TouchSpring& spring, double push);
 /// The part of v along a plane.
 inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
