@@ -42,11 +42,12 @@ int TextureReader::index_of(const std::string& reference, Result<std::vector<std
 }
 
 Result<std::vector<std::uint8_t>> TextureReader::read(const std::string& reference) const {
-    // Beside the model, else by its bare name: exporters write the paths of their own machine.
+    // Beside the model, else by its bare name: exporters write the paths of their own machine. Else by its last word:
+    // readers that know no spaces in names have taught authors to call "Living room rug.jpg" "rug.jpg".
     std::string found = source_.find(folder_ + reference);
-    if (found.empty()) {
-        const std::size_t slash = reference.find_last_of("/\\");
-        if (slash != std::string::npos) found = source_.find(folder_ + reference.substr(slash + 1));
+    for (const char* const separators : {"/\\", "/\\ \t"}) {
+        const std::size_t end = reference.find_last_of(separators);
+        if (found.empty() && end != std::string::npos) found = source_.find(folder_ + reference.substr(end + 1));
     }
     if (found.empty()) return Error{reference, "is not in the model's folder"};
     return source_.read(found);

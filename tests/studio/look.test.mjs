@@ -59,6 +59,34 @@ test("leaves and lampshades are there on all levels of detail", async () => {
   assert.ok(different < 0.003, `${different} of the picture differs`);
 });
 
+test("trees are thinned out from afar and look as before", async () => {
+  const keys = ["japaneseMaple", "poplar", "peachBlossom", "ficusTree"];
+  const entities = keys.map((key, at) => ({ index: at + 2, model: `sweethome3d:Scopia#${key}`, pose: { position: [9 * at - 13, 0, 0] } }));
+  const page = await open(entities, { position: [0, 4, 75], target: [0, 4, 0] });
+  const coarse = await pictureOfScene(page);
+  const coarseTriangles = await page.evaluate(() => window.embody.drawn().triangles);
+  await page.evaluate(() => window.embody.showFullDetail(true));
+  const full = await pictureOfScene(page);
+  const different = await difference(page, coarse, full);
+  const fullTriangles = await page.evaluate(() => window.embody.drawn().triangles);
+  assert.ok(coarseTriangles < fullTriangles / 4, `${coarseTriangles} of ${fullTriangles} triangles`);
+  assert.ok(different < 0.01, `${different} of the picture differs`);
+  const change = (await brightness(page, full)) / (await brightness(page, coarse)) - 1;
+  assert.ok(Math.abs(change) < 0.005, `${change} brighter in full detail`);
+});
+
+test("cloth is drawn in the detail that it needs, and not where it is out of view", async () => {
+  const curtain = (index, position) => ({ index, model: "sweethome3d:eTeks#curtains", pose: { position } });
+  const page = await open([curtain(2, [0, 0.5, 0]), curtain(3, [0, 0.5, 30]), curtain(4, [0, 0.5, -25])], { position: [0, 1.5, 2.2], target: [0, 1.5, 0] });
+  const levels = () => page.evaluate(() => [2, 3, 4].map((index) => window.embody.levelOf(index)));
+  await page.waitForFunction(() => [2, 3, 4].every((index) => window.embody.bent(index) !== null));
+  await pictured(page);
+  const [near, behind, far] = await levels();
+  assert.equal(near, 0);
+  assert.equal(behind, -1);
+  assert.ok(far >= 2, `level ${far} at 27 m`);
+});
+
 test("what is out of view is not drawn, and can be met by a ray", async () => {
   const box = (index, x) => ({ index, shape: { type: "box", half_extents: [0.5, 0.5, 0.5] }, pose: { position: [x, 0.5, 0] } });
   const page = await open([box(2, 0), box(3, 40)], { position: [0, 2, 6], target: [0, 0.5, 0] });

@@ -37,7 +37,7 @@ export class Batch {
   private hadShadows = false;
   private readonly target: Target;
   private readonly ownCenter = new Vector3();
-  private readonly ownRadius: number;
+  private ownRadius = Infinity;
 
   constructor(
     readonly drawable: Drawable,
@@ -52,8 +52,7 @@ export class Batch {
     };
     this.materials = drawable.parts.map(dressed);
     this.farMaterials = drawable.far?.parts.map(dressed) ?? [];
-    drawable.bounds.getCenter(this.ownCenter);
-    this.ownRadius = drawable.bends || !drawable.castsShadow ? Infinity : drawable.bounds.getSize(center).length() / 2;
+    this.measure();
     this.target = new Target(this);
     group.add(this.target);
   }
@@ -98,6 +97,7 @@ export class Batch {
     const slot = this.slotOf.get(index);
     if (slot === undefined) return;
     matrix.toArray(this.instances.matrices, 16 * slot);
+    if (this.drawable.bends) this.measure();
     center.copy(this.ownCenter).applyMatrix4(matrix);
     const scale = matrix.getMaxScaleOnAxis();
     const { balls } = this;
@@ -191,6 +191,13 @@ export class Batch {
     for (const level of this.levels) level?.dispose(true);
     for (const material of [...this.materials, ...this.farMaterials]) material.dispose();
     this.group.remove(this.target);
+  }
+
+  /** The ball around what is drawn, in its own frame: of what bends it is another each time. */
+  private measure(): void {
+    const { bounds, castsShadow } = this.drawable;
+    bounds.getCenter(this.ownCenter);
+    this.ownRadius = castsShadow && !bounds.isEmpty() ? bounds.getSize(center).length() / 2 : Infinity;
   }
 
   private coarse(which: number, error: number): BufferGeometry {

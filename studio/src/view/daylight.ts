@@ -25,6 +25,8 @@ export interface Daylight {
   /** Of the sun as a directional light, and of the sky around. */
   sunStrength: number;
   skyStrength: number;
+  /** What the picture is brightened by, as a camera that is set for rooms by day. */
+  exposure: number;
   zenith: Color;
   horizon: Color;
 }
@@ -43,6 +45,7 @@ export function daylightAt(hour: number): Daylight {
     sun: isNight ? MOONLIGHT.clone() : LOW_SUN.clone().lerp(HIGH_SUN, smooth(0, 0.45, height)),
     sunStrength: isNight ? 0.16 : 0.25 + 2.0 * day,
     skyStrength: 0.1 + 0.9 * day,
+    exposure: 1 + 0.5 * day,
     zenith: between(SKY.night.zenith, SKY.dusk.zenith, SKY.day.zenith),
     horizon: between(SKY.night.horizon, SKY.dusk.horizon, SKY.day.horizon),
   };
@@ -78,7 +81,9 @@ export class SkyDome {
         void main() {
           vec3 ray = normalize(along);
           vec3 color = mix(horizon, zenith, pow(max(ray.y, 0.0), 0.55));
-          color = mix(color, horizon * 0.55, smoothstep(0.0, -0.25, ray.y));
+          // The ground gives back the sky's light without its blue.
+          vec3 ground = 0.6 * dot(horizon, vec3(0.2126, 0.7152, 0.0722)) * vec3(1.04, 1.0, 0.93);
+          color = mix(color, ground, smoothstep(0.0, -0.25, ray.y));
           float near = max(dot(ray, towards), 0.0);
           float high = near * near * near * near;
           color += sun * (0.25 * high * high + 1.5 * smoothstep(0.9993, 0.9997, near)) * step(-0.02, ray.y);

@@ -28,6 +28,8 @@ const PLAIN_DIRECTION = new Vector3(0.45, 1, 0.6).normalize();
 /** Fractions of the sky's and the ground's colour that light things from all sides. */
 const PLAIN_SKY = new Color(0xdfe8f5);
 const PLAIN_GROUND = new Color(0x6e6a64);
+/** By daylight a floor in the sun lights from below. */
+const DAYLIT_GROUND = new Color(0x94897b);
 
 /** Light, fog and ground grid: a plain studio that does not change the models' own colours, or sun and sky of an hour. */
 export class Environment {
@@ -54,7 +56,7 @@ export class Environment {
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.02;
-    this.sun.shadow.radius = 4;
+    this.sun.shadow.radius = 2;
     scene.add(this.sun, this.sun.target, this.sky, this.grid);
     scene.fog = this.fog;
   }
@@ -100,7 +102,8 @@ export class Environment {
     // Half of the sky's own hue: things keep their colours.
     this.sky.color.copy(PLAIN_SKY);
     if (daylight) this.sky.color.lerp(daylight.zenith.clone().lerp(daylight.horizon, 0.6), 0.5);
-    this.sky.groundColor.copy(PLAIN_GROUND);
+    this.sky.groundColor.copy(daylight ? DAYLIT_GROUND : PLAIN_GROUND);
+    this.renderer.toneMappingExposure = daylight?.exposure ?? 1;
     this.sky.intensity = (high ? 0.5 : 2.1) * (daylight ? 0.85 * daylight.skyStrength : 1);
     if (high) scene.environment = daylight ? (this.skyReflections ??= this.reflect(daylight)) : (this.reflections ??= this.generate(new RoomEnvironment()));
     else scene.environment = null;
@@ -165,9 +168,10 @@ function gridMesh(): Mesh {
   const material = new ShaderMaterial({
     transparent: true,
     depthWrite: false,
+    // Before what lies at the same height, but below a floor of 5 mm: a whole pixel's slope is more than that.
     polygonOffset: true,
-    polygonOffsetFactor: -2,
-    polygonOffsetUnits: -2,
+    polygonOffsetFactor: -0.1,
+    polygonOffsetUnits: -4,
     side: 2,
     uniforms: { color: { value: new Color() } },
     vertexShader: `

@@ -11,11 +11,17 @@ interface Numbers {
   values: number[];
 }
 
+/** A refined geometry, and the lists of triangles on the way to it, the coarsest first. */
+export interface Refined {
+  geometry: BufferGeometry;
+  stages: number[][];
+}
+
 /**
  * A copy of a geometry transformed by `matrix`, in plain floats, with edges longer than `longest` halved until none is, so that a
  * flat triangle can bend. An edge is halved at the same point for all triangles that have it.
  */
-export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: number): BufferGeometry {
+export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: number): Refined {
   const placed = geometry.clone();
   if (!placed.getAttribute("normal")) placed.computeVertexNormals();
   const attributes = new Map<string, Numbers>();
@@ -25,9 +31,11 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
   placeAll(attributes.get("normal")!, (vector) => vector.applyNormalMatrix(turn));
   let triangles = placed.index ? Array.from(placed.index.array) : Array.from({ length: placed.getAttribute("position").count }, (_, i) => i);
   placed.dispose();
+  const stages: number[][] = [];
   for (let pass = 0; pass < MOST_PASSES; ++pass) {
     const split = halve(triangles, attributes, longest);
     if (!split) break;
+    stages.push(triangles);
     triangles = split;
   }
   // The mean of two unit vectors is shorter than 1.
@@ -36,7 +44,7 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
   const refined = new BufferGeometry();
   for (const [name, { size, values }] of attributes) refined.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
   refined.setIndex(triangles);
-  return refined;
+  return { geometry: refined, stages };
 }
 
 // Converts quantised numbers to floats.

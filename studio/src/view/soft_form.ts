@@ -2,7 +2,7 @@
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
 import { type Drawable, type DrawablePart, isClosed } from "./drawable";
-import { refine } from "./refine";
+import { refine, type Refined } from "./refine";
 import type { Quality } from "./tint";
 
 const NONE = new Matrix4();
@@ -396,6 +396,36 @@ class CarriedPart {
   }
 }
 
+/** Coarser levels of what bends. */
+const LEVELS = 8;
+/** So far a straight edge is from a surface that bends by 90 degrees along it, in its lengths. */
+const SAG = 0.2;
+
+/** For each error the fewest triangles that keep to it: of the stages of refinement, or of the levels of the form at rest. */
+function coarserLevels({ geometry, stages }: Refined, { levels }: DrawablePart, restErrors: readonly number[], errors: readonly number[]): (BufferAttribute | null)[] {
+  const position = geometry.getAttribute("position").array;
+  const coarser = [
+    ...stages.map((index) => ({ index: new BufferAttribute(new Uint32Array(index), 1), error: SAG * longestEdge(index, position) })),
+    ...(levels ?? []).map((index, at) => ({ index, error: Math.max(restErrors[at]!, index ? SAG * longestEdge(index.array, position) : 0) })),
+  ];
+  let best = geometry.index as BufferAttribute | null;
+  return errors.map((most) => {
+    for (const { index, error } of coarser) if (error <= most && (index?.count ?? 0) < (best?.count ?? 0)) best = index;
+    return best;
+  });
+}
+
+function longestEdge(index: ArrayLike<number>, position: ArrayLike<number>): number {
+  let most = 0;
+  for (let i = 0; i < index.length; ++i) {
+    const a = 3 * index[i]!;
+    const b = 3 * index[i % 3 === 2 ? i - 2 : i + 1]!;
+    const x = position[a]! - position[b]!, y = position[a + 1]! - position[b + 1]!, z = position[a + 2]! - position[b + 2]!;
+    most = Math.max(most, x * x + y * y + z * z);
+  }
+  return Math.sqrt(most);
+}
+
 /** A drawable that bends with the nodes of one entity: it has its own geometries and the materials of its original. */
 export class SoftSkin {
   readonly drawable: Drawable;
@@ -411,13 +441,13 @@ export class SoftSkin {
     const finder = new ElementFinder(form);
     // A rope that is broken everywhere has nothing to draw.
     const shown = form.count > 0 ? plain.parts : [];
-    const parts: DrawablePart[] = shown.map(({ geometry, material, matrix }) => ({
-      geometry: refine(geometry, matrix, longest),
-      material,
-      matrix: NONE,
-    }));
+    const levelErrors = Array.from({ length: LEVELS }, (_, level) => SAG * longest * 2 ** (level + 1));
+    const parts: DrawablePart[] = shown.map((part) => {
+      const refined = refine(part.geometry, part.matrix, longest);
+      return { geometry: refined.geometry, material: part.material, matrix: NONE, levels: coarserLevels(refined, part, plain.levelErrors ?? [], levelErrors) };
+    });
     this.parts = parts.map(({ geometry }) => new CarriedPart(geometry, form, finder));
-    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
+    this.drawable = { parts, levelErrors, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
   }
 
   /** Measures the drawn form; for tests. */

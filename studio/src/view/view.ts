@@ -16,6 +16,7 @@ import { PeopleView } from "./people_view";
 import { PinMarks } from "./pin_marks";
 import { Lamps } from "./lamps";
 import { Outline } from "./outline";
+import { smoothShadows } from "./soft_shadows";
 import type { Quality } from "./tint";
 
 /** The point where a ray from the pointer met an entity. */
@@ -109,6 +110,7 @@ export class View {
     this.renderer = new WebGLRenderer({ canvas, antialias: quality === "high", stencil: true, powerPreference: "high-performance" });
     this.hasSmoothEdges = this.renderer.getContext().getContextAttributes()?.antialias ?? false;
     this.renderer.toneMapping = NeutralToneMapping;
+    smoothShadows();
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
     this.environment = new Environment(this.scene, this.renderer);
