@@ -32,11 +32,41 @@ constexpr std::array<Format, 8> formats{{{".glb", "glTF", read_by_assimp},
                                          {".ac", "AC3D", read_by_assimp},
                                          {".wrl", "VRML 2.0", read_vrml}}};
 
+/// So many bytes tell the format of a file.
+constexpr std::size_t content_head = 4096;
+
 const Format* format_of(const std::filesystem::path& file) {
     const std::string extension = extension_of(file);
     const auto found = std::ranges::find(formats, extension, &Format::extension);
     return found == formats.end() ? nullptr : &*found;
 }
+
+/// Whether a text has lines of vertices, as every OBJ has soon after its comments.
+bool is_obj(std::string_view text) {
+    if (text.find('\0') != std::string_view::npos) return false;
+    return text.starts_with("v ") || text.find("\nv ") != std::string_view::npos;
+}
+
+/// A source in which one file goes by another name.
+class RenamedSource final : public FileSource {
+public:
+    RenamedSource(const FileSource& source, std::string path, std::string_view extension)
+        : source_(source), path_(std::move(path)), alias_(path_ + std::string(extension)) {}
+    [[nodiscard]] const std::string& alias() const { return alias_; }
+    [[nodiscard]] std::string find(std::string_view path) const override {
+        return path == alias_ ? alias_ : source_.find(path);
+    }
+    [[nodiscard]] Result<std::vector<std::uint8_t>> read(std::string_view path) const override {
+        return source_.read(path == alias_ ? path_ : path);
+    }
+    [[nodiscard]] std::string describe(std::string_view path) const override {
+        return source_.describe(path == alias_ ? path_ : path);
+    }
+
+private:
+    const FileSource& source_;
+    std::string path_, alias_;
+};
 
 // "glTF, OBJ … or VRML 2.0"
 std::string names_of_formats() {
@@ -91,8 +121,28 @@ Error without_triangles(std::string where) { return {std::move(where), std::stri
 
 bool is_without_triangles(const Error& error) { return error.why == without_triangles_reason; }
 
+std::string_view extension_by_content(std::span<const std::uint8_t> head) {
+    const std::string_view text(reinterpret_cast<const char*>(head.data()), std::min(head.size(), content_head));
+    if (text.starts_with("glTF")) return ".glb";
+    if (text.starts_with("ply")) return ".ply";
+    if (text.starts_with("AC3D")) return ".ac";
+    if (text.starts_with("#VRML V2.0")) return ".wrl";
+    if (text.find("<COLLADA") != std::string_view::npos) return ".dae";
+    return is_obj(text) ? ".obj" : std::string_view();
+}
+
 Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
+    if (extension_of(path).empty()) {
+        const std::string stored = source.find(path);
+        if (stored.empty()) return Error{where, "no such file"};
+        const auto bytes = source.read(stored);
+        if (!bytes) return Error{where, bytes.error().why, bytes.error().remedy};
+        if (const std::string_view extension = extension_by_content(*bytes); !extension.empty()) {
+            const RenamedSource renamed(source, stored, extension);
+            return read_model(renamed, renamed.alias());
+        }
+    }
     if (const auto able = can_read(path); !able) return Error{where, able.error().why, able.error().remedy};
     const std::string found = source.find(path);
     if (found.empty()) return Error{where, "no such file"};

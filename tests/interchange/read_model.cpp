@@ -190,6 +190,38 @@ TEST(ReadModel, ScalesAndTurnsColladaAsItsAssetSays) {
     expect_close(size_of(*read), {1, 2, 0});
 }
 
+// Java 3D's names: "amber" is (0.576, 0.268, 0) on the screen. With a library of its own a file means its own.
+TEST(ReadModel, NamesOfMaterialsStandForThemWithoutALibrary) {
+    const ScratchFolder scratch;
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl amber\nf 1 2 3\n";
+    const auto bare = read_model(scratch.write("bare.obj", triangle));
+    ASSERT_TRUE(bare.ok()) << bare.error().message();
+    const auto color_of = [](const RawScene& scene) {
+        return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material)).base_color;
+    };
+    EXPECT_NEAR(color_of(*bare)[0], std::pow((0.576 + 0.055) / 1.055, 2.4), 1e-4);
+    EXPECT_NEAR(color_of(*bare)[2], 0, 1e-6);
+    scratch.write("own.mtl", "newmtl amber\nKd 0 0 1\n");
+    const auto own = read_model(scratch.write("own.obj", "mtllib own.mtl\n" + triangle));
+    ASSERT_TRUE(own.ok());
+    EXPECT_NEAR(color_of(*own)[2], 1, 1e-6);
+}
+
+TEST(ReadModel, FindsTexturesThatWereNamedOnAnotherMachine) {
+    const ScratchFolder scratch;
+    scratch.write("rug.png", tiny_png());
+    const auto images_of = [&](const std::string& reference) {
+        scratch.write("m.mtl", "newmtl rug\nmap_Kd " + reference + "\n");
+        const auto read = read_model(scratch.write(
+            "m.obj", "mtllib m.mtl\nusemtl rug\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"));
+        return read ? read->images.size() : 99;
+    };
+    EXPECT_EQ(images_of("rug.png"), 1u);
+    EXPECT_EQ(images_of("C:\\Users\\me\\rug.png"), 1u);
+    EXPECT_EQ(images_of("/home/me/3D/ TEXTURES/Living room rug.png"), 1u);
+    EXPECT_EQ(images_of("/home/me/3D/ TEXTURES/Living room chair.png"), 0u);
+}
+
 /// A square of 2 m with a material, by AC3D's text form; `texture` may be empty.
 std::string square_ac(const std::string& texture) {
     return "AC3Db\nMATERIAL \"red paint\" rgb 1 0 0 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 10 trans 0.25\n"

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "interchange/sweethome/sweethome_home.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
+#include "interchange/archive/archive.h"
+#include "interchange/read_model.h"
 #include "interchange/scratch_files.h"
 
 namespace embody::interchange {
@@ -64,6 +69,73 @@ TEST_F(SweethomeHomeFile, IsReadInMetresWithZDownThePlan) {
     EXPECT_DOUBLE_EQ(read->pieces[2].elevation, 2);
     // Two bad walls, a room, a piece without a place, one without a model.
     EXPECT_EQ(read->notes.size(), 4U);
+}
+
+// Models of one file have a number for a name in homes.
+TEST_F(SweethomeHomeFile, FindsModelsWithoutAnExtension) {
+    const auto file = folder_.write_zip(
+        "numbers.sh3d",
+        {{"Home.xml", "<home><pieceOfFurniture name='Bed' x='0' y='0' width='9' depth='9' height='9' model='1'/>"
+                      "<pieceOfFurniture name='Note' x='0' y='0' width='9' depth='9' height='9' model='2'/></home>"},
+         {"1", test::cube_obj()},
+         {"2", "not a model"}});
+    const auto read = read_sweethome_home(file);
+    ASSERT_TRUE(read.ok()) << read.error().message();
+    ASSERT_EQ(read->furniture.pieces.size(), 1U);
+    EXPECT_EQ(read->furniture.pieces[0].model_path, "1");
+    EXPECT_TRUE(read->pieces[1].id.empty());
+    const auto archive = Archive::open(file);
+    const auto model = read_model(ArchiveSource(*archive, "numbers.sh3d"), "1");
+    ASSERT_TRUE(model.ok()) << model.error().message();
+    const auto note = read_model(ArchiveSource(*archive, "numbers.sh3d"), "2");
+    ASSERT_FALSE(note.ok());
+    EXPECT_NE(note.error().message().find("format that is not read"), std::string::npos);
+}
+
+TEST_F(SweethomeHomeFile, PiecesHaveTheirColoursAndTilt) {
+    const auto read = read_sweethome_home(home(
+        "<home><pieceOfFurniture name='A' x='0' y='0' width='9' depth='9' height='9' model='1/chair.obj' color='FFFF0000' "
+        "pitch='0.5' heightInPlan='12'><material name='seat' color='FF00FF00'/><material name='leg'><texture/></material>"
+        "</pieceOfFurniture><pieceOfFurniture name='B' x='0' y='0' width='9' depth='9' height='9' model='1/chair.obj'/>"
+        "</home>"));
+    ASSERT_TRUE(read.ok()) << read.error().message();
+    ASSERT_EQ(read->furniture.pieces.size(), 2U) << "of another colour it is another model";
+    const std::vector<Recolor> wanted{{"", {1, 0, 0}}, {"seat", {0, 1, 0}}};
+    EXPECT_EQ(read->furniture.pieces[0].recolors, wanted);
+    EXPECT_TRUE(read->furniture.pieces[1].recolors.empty());
+    EXPECT_DOUBLE_EQ(read->pieces[0].pitch, -0.5);
+    EXPECT_DOUBLE_EQ(read->pieces[0].height, 0.12);
+    EXPECT_EQ(read->notes.size(), 1U) << "a texture is left out";
+}
+
+// Half a circle above the plan's line from (0, 0) to (4, 0), and three quarters of one.
+TEST_F(SweethomeHomeFile, CurvedWallsAreRowsOfStraightOnes) {
+    for (const double arc : {0.3, std::numbers::pi / 2, std::numbers::pi, 1.5 * std::numbers::pi, -0.3, -2.0, -5.0}) {
+        char wall[256];
+        std::snprintf(wall, sizeof wall,
+                      "<home><wall xStart='0' yStart='0' xEnd='400' yEnd='0' height='200' heightAtEnd='300' "
+                      "thickness='12' arcExtent='%.9f'/></home>", arc);
+        const auto read = read_sweethome_home(home(wall));
+        ASSERT_TRUE(read.ok());
+        const auto& walls = read->walls;
+        ASSERT_GE(walls.size(), 2U);
+        EXPECT_EQ(walls.front().start, (HomePoint{0, 0}));
+        EXPECT_EQ(walls.back().end, (HomePoint{4, 0}));
+        EXPECT_NEAR(walls.back().end_height, 3, 1e-9);
+        // A circle through both ends on which the wall turns by `arc` has this radius; it bulges up the plan for arc > 0.
+        const double radius = 2 / std::fabs(std::sin(arc / 2));
+        double length = 0, highest = 0;
+        for (std::size_t i = 0; i < walls.size(); ++i) {
+            if (i > 0) {
+                EXPECT_EQ(walls[i].start, walls[i - 1].end);
+            }
+            length += std::hypot(walls[i].end[0] - walls[i].start[0], walls[i].end[1] - walls[i].start[1]);
+            highest = std::max(highest, (arc > 0 ? -1 : 1) * walls[i].end[1]);
+        }
+        EXPECT_NEAR(length, radius * std::fabs(arc), 0.02 * length) << arc;
+        EXPECT_NEAR(highest, radius * (1 - std::cos(arc / 2)), 0.1 * radius) << arc;
+        EXPECT_TRUE(read->notes.empty());
+    }
 }
 
 TEST_F(SweethomeHomeFile, WithoutAPlanInXmlSaysWhatToDo) {

@@ -139,6 +139,7 @@ struct Walk {
             item.tags = std::move(piece.tags);
             item.stated_size = piece.size;
             item.stated_rotation = piece.rotation;
+            item.recolors = std::move(piece.recolors);
             item.movable = piece.movable;
             item.door_or_window = piece.door_or_window;
             item.light_source = piece.light_source;

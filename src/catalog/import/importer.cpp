@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when preparing gives another result from the same file: the next import prepares all models again.
-constexpr std::uint64_t preparation_revision = 3;
+constexpr std::uint64_t preparation_revision = 4;
 
 void add_text(StateHash& hash, const std::string& text) {
     hash.add(std::uint64_t{text.size()});
@@ -42,6 +42,10 @@ std::uint64_t hash_preparation(const ImportItem& item, std::uint64_t file_hash) 
     for (const double length : item.stated_size.value_or(std::array<double, 3>{})) hash.add(length);
     if (item.stated_unit) hash.add(*item.stated_unit);
     for (const double number : item.stated_rotation) hash.add(number);
+    for (const interchange::Recolor& recolor : item.recolors) {
+        add_text(hash, recolor.material);
+        for (const double part : recolor.color) hash.add(part);
+    }
     return hash.value();
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "catalog/prepare/geometry_measurement.h"
+#include "catalog/prepare/appearance.h"
 #include "catalog/prepare/placement.h"
 #include "catalog/prepare/quality.h"
 #include "catalog/prepare/surface_finish.h"
@@ -60,6 +61,7 @@ Result<PreparedModel> prepare_from(const interchange::FileSource& source, const 
     if (!bytes) return bytes.error();
 
     // Into the model's frame, and complete for drawing.
+    set_appearance(*scene, item);
     if (const auto placed = place(*scene, item); !placed) return Error{source.describe(path), placed.error().why};
     finish_surfaces(*scene);
 

@@ -38,10 +38,27 @@ std::vector<std::string> take_texts(ByteReader& in) {
     for (std::string& text : texts) text = in.text(max_text_bytes);
     return texts;
 }
+void put(ByteWriter& out, const std::vector<interchange::Recolor>& recolors) {
+    const std::size_t count = std::min(recolors.size(), max_list_length);
+    out.number(static_cast<std::uint64_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        out.text(std::string_view(recolors[i].material).substr(0, max_text_bytes));
+        for (const double part : recolors[i].color) out.number(part);
+    }
+}
+
 double take_finite(ByteReader& in) {
     const auto value = in.number<double>();
     if (!std::isfinite(value)) in.fail();
     return value;
+}
+std::vector<interchange::Recolor> take_recolors(ByteReader& in) {
+    std::vector<interchange::Recolor> recolors(in.count(max_list_length, sizeof(std::uint64_t)));
+    for (interchange::Recolor& recolor : recolors) {
+        recolor.material = in.text(max_text_bytes);
+        for (double& part : recolor.color) part = take_finite(in);
+    }
+    return recolors;
 }
 /// Lengths, areas, volumes: not negative, and below what any thing of 10 km measures.
 double take_measure(ByteReader& in) {
@@ -213,6 +230,7 @@ std::vector<std::uint8_t> to_bytes(const ImportItem& item) {
     out.number(std::uint8_t(item.stated_unit.has_value()));
     out.number(item.stated_unit.value_or(0));
     for (const double part : item.stated_rotation) out.number(part);
+    put(out, item.recolors);
     put(out, item.movable);
     out.number(std::uint8_t(item.door_or_window));
     return out.take();
@@ -234,6 +252,7 @@ Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload) {
     const double unit = take_measure(in);
     if (has_unit) item.stated_unit = unit;
     for (double& part : item.stated_rotation) part = take_finite(in);
+    item.recolors = take_recolors(in);
     item.movable = take_answer(in);
     item.door_or_window = take_truth(in);
     if (!in.is_complete()) return Error{item.path, "its name, tags or numbers are too long or not finite"};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interchange/assimp/named_materials.h"
 #include "interchange/image/image_codec.h"
 #include "interchange/screen_color.h"
 #include "interchange/texture_reader.h"
@@ -85,6 +86,12 @@ void read_surface(const aiMaterial& material, const MaterialReading& reading, Ra
     }
 }
 
+void read_name(const NamedMaterial& named, RawMaterial& out) {
+    for (std::size_t k = 0; k < 3; ++k) out.base_color[k] = linear_from_srgb(named.color[k]);
+    out.base_color[3] = named.opacity;
+    out.roughness = named.exponent > 0 ? roughness_from_exponent(named.exponent) : 1.0F;
+}
+
 }  // namespace
 
 void add_materials(const aiScene& read, const FileSource& source, const std::string& model_path,
@@ -97,6 +104,8 @@ void add_materials(const aiScene& read, const FileSource& source, const std::str
         if (out.name.empty()) out.name = "material " + std::to_string(i + 1);
         read_colors(material, reading, out);
         read_surface(material, reading, out);
+        if (const NamedMaterial* named = named_material(out.name); named != nullptr && reading.names_stand_for_materials)
+            read_name(*named, out);
         if (const std::string reference = texture_reference(material); !reference.empty()) {
             out.base_color_image = index_of(textures, read, reference);
             if (out.base_color_image >= 0 && reading.texture_replaces_color) {

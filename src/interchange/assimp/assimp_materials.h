@@ -16,6 +16,7 @@ struct MaterialReading {
         false;  ///< glTF's factors are linear; the colours of older formats are meant for the screen (sRGB)
     bool texture_replaces_color = true;  ///< older exporters leave a gray or black colour beside a texture
     bool double_sided = true;            ///< where the format cannot say: both, as its surfaces are often open
+    bool names_stand_for_materials = false;  ///< an OBJ without a material library (named_materials.h)
 };
 
 /// Adds the scene's materials and the images that they use to `scene`, in assimp's order. `model_path` is the model's

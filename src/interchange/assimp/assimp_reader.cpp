@@ -12,6 +12,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -46,11 +47,17 @@ void keep_our_formats(Assimp::Importer& importer) {
     }
 }
 
-MaterialReading material_reading_of(const std::string& extension) {
+MaterialReading material_reading_of(const std::string& extension, std::span<const std::uint8_t> bytes) {
+    MaterialReading reading;
     if (extension == ".gltf" || extension == ".glb") {
-        return {.linear_colors = true, .texture_replaces_color = false, .double_sided = false};
+        reading.linear_colors = true;
+        reading.texture_replaces_color = reading.double_sided = false;
     }
-    return {};
+    if (extension == ".obj") {
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        reading.names_stand_for_materials = text.find("mtllib") == std::string_view::npos;
+    }
+    return reading;
 }
 
 /// `read` placed by `to_scene`, its polygons as triangles; points and lines are skipped.
@@ -155,7 +162,7 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     }
 
     RawScene scene;
-    add_materials(*read, source, path, material_reading_of(extension_of(path)), scene);
+    add_materials(*read, source, path, material_reading_of(extension_of(path), *bytes), scene);
     if (const auto added = add_meshes(*read, scene); !added)
         return Error{where + ": " + added.error().where, added.error().why};
     if (scene.meshes.empty()) return without_triangles(where);

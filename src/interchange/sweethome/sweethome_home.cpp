@@ -2,10 +2,12 @@
 // Elements and attributes: Sweet Home 3D, com.eteks.sweethome3d.io.HomeXMLHandler. Lengths are in centimetres.
 #include "interchange/sweethome/sweethome_home.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <pugixml.hpp>
 #include <set>
 #include <string_view>
@@ -23,7 +25,10 @@ constexpr std::uint64_t max_model_bytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t max_bytes_of_models = std::uint64_t{2} << 30;
 constexpr std::size_t max_things = 100'000;
 constexpr int max_group_depth = 32;
-constexpr double largest = 1e4;  // m, of any length or coordinate
+constexpr double largest = 1e4;       // m, of any length or coordinate
+constexpr double max_sagitta = 0.02;  // m between a curved wall and the straight ones that stand for it
+constexpr int max_arc_pieces = 64;
+constexpr std::size_t max_recolors = 256;
 
 std::optional<double> plan_number(std::string_view text) {
     double value = 0;
@@ -114,11 +119,15 @@ private:
     void note(std::string text) { home_.notes.push_back(std::move(text)); }
     void read_level(const pugi::xml_node& node);
     void read_wall(const pugi::xml_node& node);
+    /// Straight walls along an arc, `arc` in radians.
+    void add_curved_wall(const HomeWall& wall, double arc);
     void read_room(const pugi::xml_node& node);
     void read_furniture(const pugi::xml_node& node, const std::string& group, const std::string& level, int depth);
     void read_piece(const pugi::xml_node& node, const std::string& group, const std::string& level);
+    std::vector<Recolor> recolors_of(const pugi::xml_node& node);
+    /// The path in the archive of a model that can be read, else empty.
     [[nodiscard]] std::string model_path_of(const pugi::xml_node& node) const;
-    /// The hash of a model's bytes; none where they cannot be read.
+    /// The hash of a model's bytes; none where they cannot be read, or where neither they nor `path` tell a format.
     std::optional<std::uint64_t> content_of(const std::string& path);
     void tell_counts();
 
@@ -129,7 +138,7 @@ private:
     std::map<std::string, std::optional<std::uint64_t>> contents_;
     std::uint64_t bytes_read_ = 0;
     std::set<std::string> known_;
-    std::size_t bad_walls_ = 0, curved_walls_ = 0, bad_rooms_ = 0, bad_pieces_ = 0;
+    std::size_t bad_walls_ = 0, bad_rooms_ = 0, bad_pieces_ = 0, textured_ = 0;
 };
 
 void PlanReader::read_level(const pugi::xml_node& node) {
@@ -158,8 +167,31 @@ void PlanReader::read_wall(const pugi::xml_node& node) {
     wall.color = color_of(node, "leftSideColor");
     if (!wall.color) wall.color = color_of(node, "rightSideColor");
     wall.level = node.attribute("level").value();
-    if (const auto arc = number_of(node, "arcExtent"); arc && std::fabs(*arc) > 1e-3) ++curved_walls_;
-    home_.walls.push_back(std::move(wall));
+    const double arc = number_of(node, "arcExtent").value_or(0);
+    if (std::fabs(arc) > 1e-3 && std::fabs(arc) < 2 * std::numbers::pi - 1e-3)
+        add_curved_wall(wall, arc);
+    else
+        home_.walls.push_back(std::move(wall));
+}
+
+// The centre is where start and end are seen at the angle of the arc; the wall goes about it from start to end by `arc`.
+void PlanReader::add_curved_wall(const HomeWall& wall, double arc) {
+    const double x = wall.end[0] - wall.start[0], z = wall.end[1] - wall.start[1];
+    const double beside = 0.5 / std::tan(arc / 2);
+    const HomePoint center{wall.start[0] + x / 2 - beside * z, wall.start[1] + z / 2 + beside * x};
+    const double radius = std::hypot(wall.start[0] - center[0], wall.start[1] - center[1]);
+    const double step = 2 * std::acos(std::max(1 - max_sagitta / radius, 0.7));
+    const int count = std::clamp(static_cast<int>(std::ceil(std::fabs(arc) / step)), 2, max_arc_pieces);
+    HomeWall piece = wall;
+    for (int i = 1; i <= count; ++i) {
+        const double part = static_cast<double>(i) / count, c = std::cos(part * arc), s = std::sin(part * arc);
+        const double rx = wall.start[0] - center[0], rz = wall.start[1] - center[1];
+        piece.end = i == count ? wall.end : HomePoint{center[0] + c * rx - s * rz, center[1] + s * rx + c * rz};
+        piece.end_height = wall.height + part * (wall.end_height - wall.height);
+        home_.walls.push_back(piece);
+        piece.start = piece.end;
+        piece.height = piece.end_height;
+    }
 }
 
 void PlanReader::read_room(const pugi::xml_node& node) {
@@ -202,11 +234,12 @@ void PlanReader::read_furniture(const pugi::xml_node& node, const std::string& g
     }
 }
 
-// The model's path in the archive, or of the first model in the folder that it names.
+// The model itself, which has a number for a name where it is one file, or the first model in the folder that it names.
 std::string PlanReader::model_path_of(const pugi::xml_node& node) const {
     const std::string path = normalized_member_path(node.attribute("model").value());
     if (path.empty()) return {};
-    if (std::string found = archive_.find(path); !found.empty()) return is_model_file(found) ? found : std::string();
+    if (std::string found = archive_.find(path); !found.empty())
+        return is_model_file(found) || extension_of(found).empty() ? found : std::string();
     for (const ArchiveMember& member : archive_.members())
         if (member.path.starts_with(path + "/") && is_model_file(member.path)) return member.path;
     return {};
@@ -217,7 +250,8 @@ std::optional<std::uint64_t> PlanReader::content_of(const std::string& path) {
     if (known != contents_.end()) return known->second;
     std::optional<std::uint64_t> content;
     if (bytes_read_ < max_bytes_of_models) {
-        if (const auto bytes = archive_.read(path, max_model_bytes); bytes.ok()) {
+        const auto bytes = archive_.read(path, max_model_bytes);
+        if (bytes.ok() && (is_model_file(path) || !extension_by_content(*bytes).empty())) {
             StateHash hash;
             hash.add_bytes(bytes->data(), bytes->size());
             bytes_read_ += bytes->size();
@@ -226,6 +260,22 @@ std::optional<std::uint64_t> PlanReader::content_of(const std::string& path) {
     }
     contents_.emplace(path, content);
     return content;
+}
+
+// The piece's own colour, then those of its materials.
+std::vector<Recolor> PlanReader::recolors_of(const pugi::xml_node& node) {
+    std::vector<Recolor> recolors;
+    if (const auto color = color_of(node, "color")) recolors.push_back({"", *color});
+    bool has_texture = !node.child("texture").empty();
+    for (const pugi::xml_node& material : node.children("material")) {
+        if (recolors.size() >= max_recolors) break;
+        has_texture |= !material.child("texture").empty();
+        const std::string_view name = material.attribute("name").value();
+        const auto color = color_of(material, "color");
+        if (color && !name.empty()) recolors.push_back({std::string(name), *color});
+    }
+    textured_ += has_texture ? 1 : 0;
+    return recolors;
 }
 
 void PlanReader::read_piece(const pugi::xml_node& node, const std::string& group, const std::string& level) {
@@ -242,9 +292,14 @@ void PlanReader::read_piece(const pugi::xml_node& node, const std::string& group
     piece.place = {*x, *z};
     piece.elevation = length_of(node, "elevation").value_or(0);
     piece.angle = -number_of(node, "angle").value_or(0);
+    piece.pitch = -number_of(node, "pitch").value_or(0);
+    piece.roll = -number_of(node, "roll").value_or(0);
     piece.size = {*width, *height, *depth};
+    const bool is_tilted = piece.pitch != 0 || piece.roll != 0;
+    piece.height = is_tilted ? size_of(node, "heightInPlan").value_or(0) : 0;
     piece.color = color_of(node, "color");
     piece.door_or_window = std::string_view(node.name()) == "doorOrWindow";
+    piece.light_source = std::string_view(node.name()) == "light";
     piece.movable = is_true(node, "movable", !piece.door_or_window);
 
     const std::string path = model_path_of(node);
@@ -257,13 +312,18 @@ void PlanReader::read_piece(const pugi::xml_node& node, const std::string& group
         model.creator = node.attribute("creator").value();
         model.size = piece.size;
         model.rotation = model_rotation_of(node);
+        model.recolors = recolors_of(node);
         model.movable = piece.movable;
         model.door_or_window = piece.door_or_window;
-        model.light_source = std::string_view(node.name()) == "light";
+        model.light_source = piece.light_source;
         StateHash hash;
         hash.add(*content);
         for (const double each : model.size) hash.add(each);
         for (const double each : model.rotation) hash.add(each);
+        for (const Recolor& recolor : model.recolors) {
+            hash.add_bytes(recolor.material.data(), recolor.material.size());
+            for (const double each : recolor.color) hash.add(each);
+        }
         char text[24];
         std::snprintf(text, sizeof text, "home#%016llx", static_cast<unsigned long long>(hash.value()));
         model.id = piece.id = text;
@@ -277,9 +337,9 @@ void PlanReader::tell_counts() {
         if (count > 0) note(std::to_string(count) + " " + what);
     };
     tell(bad_walls_, "walls have no length or thickness and are left out");
-    tell(curved_walls_, "walls are curved in the home and straight here");
     tell(bad_rooms_, "rooms have fewer than three corners and are left out");
     tell(bad_pieces_, "pieces of furniture have no place or size and are left out");
+    tell(textured_, "pieces of furniture have textures of the home's own, which are left out");
     std::size_t without = 0;
     for (const HomePiece& piece : home_.pieces) without += piece.id.empty() ? 1 : 0;
     tell(without, "pieces of furniture have no model that can be read: boxes of their size stand for them");

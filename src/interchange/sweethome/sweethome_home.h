@@ -40,9 +40,12 @@ struct HomePiece {
     HomePoint place{};             ///< of its middle
     double elevation = 0;          ///< of its base over the level's floor, m
     double angle = 0;              ///< about the vertical
-    std::array<double, 3> size{};  ///< width X, height Y, depth Z at angle 0, m
+    double pitch = 0, roll = 0;    ///< about X first, then about Z, before the angle; rad
+    std::array<double, 3> size{};  ///< width X, height Y, depth Z at angle, pitch and roll 0, m
+    double height = 0;             ///< from its lowest to its highest point where it is tilted, m; 0: its size's
     std::optional<HomeColor> color;
     bool door_or_window = false, movable = true;
+    bool light_source = false;  ///< may have no shape, as light itself
     std::string level;
 };
 

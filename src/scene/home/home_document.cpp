@@ -20,6 +20,7 @@ using physics::ShapeDefinition;
 using physics::WallShape;
 
 constexpr double ground_depth = 0.005;  // m: so much lower than floors the ground lies
+constexpr double ground_thickness = 0.5, garden = 10;  // m; so far the ground reaches beyond the home
 constexpr double near_below = 0.05;     // m: what is nearer below a thing carries it
 constexpr std::array<double, 3> wall_color{0.82, 0.8, 0.76}, floor_color{0.35, 0.27, 0.19},
     ground_color{0.18, 0.26, 0.12};
@@ -51,6 +52,8 @@ public:
         if (boxes_ > 0)
             result_.notes.push_back(std::to_string(boxes_) +
                                     " models of the home could not be read: boxes stand for them");
+        if (shapeless_ > 0)
+            result_.notes.push_back(std::to_string(shapeless_) + " light sources have no shape and are left out");
         return std::move(result_);
     }
 
@@ -77,6 +80,11 @@ private:
         entity.locked = true;
         return entity;
     }
+    /// Takes a point of a wall or floor, whose base is at `base`, into the extents.
+    void reach(Vec3 point, double base) {
+        extent_.add(point);
+        if (base < -near_below) cellar_.add(point);
+    }
     WallShape& wall_at(std::size_t entity) {
         return std::get<WallShape>(std::get<ShapeDefinition>(result_.document.entities[entity].geometry));
     }
@@ -95,13 +103,14 @@ private:
     std::map<std::string, const HomeLevel*> levels_;
     HomeDocument result_;
     Bounds extent_;
+    Bounds cellar_;  // of walls and floors below the ground
     std::vector<std::size_t> walls_;  // places in the document's entities
     struct Placed {
         std::size_t entity;
         Bounds bounds;
     };
     std::vector<Placed> loose_;  // things that are no doors or windows
-    std::size_t boxes_ = 0;
+    std::size_t boxes_ = 0, shapeless_ = 0;
 };
 
 void HomeBuilder::add_walls() {
@@ -117,7 +126,7 @@ void HomeBuilder::add_walls() {
         walls_.push_back(result_.document.entities.size());
         add_part("Wall", "wall", std::move(shape), placed(wall.start[0], y, wall.start[1], std::atan2(-z, x)),
                  wall.color.value_or(wall_color));
-        for (const auto& end : {wall.start, wall.end}) extent_.add(Vec3{end[0], y + wall.height, end[1]});
+        for (const auto& end : {wall.start, wall.end}) reach({end[0], y + wall.height, end[1]}, y);
     }
 }
 
@@ -130,7 +139,8 @@ void HomeBuilder::add_rooms() {
         const auto origin = room.points.front();
         for (const auto& point : room.points) {
             slab.points.push_back({point[0] - origin[0], point[1] - origin[1]});
-            extent_.add(Vec3{point[0], elevation_of(room.level), point[1]});
+            const double y = elevation_of(room.level);
+            reach({point[0], y, point[1]}, y);
         }
         if (!physics::validate(slab).ok()) {
             ++left_out;
@@ -143,17 +153,28 @@ void HomeBuilder::add_rooms() {
 }
 
 void HomeBuilder::add_piece(const HomePiece& piece) {
-    const double y = elevation_of(piece.level) + piece.elevation;
-    Entity& entity = add(piece.name, "", placed(piece.place[0], y, piece.place[1], piece.angle));
-    entity.group = piece.group;
     const std::string key = piece.id.empty() ? std::string() : key_of_home_model(piece.id);
-    if (!key.empty() && has_model_(key)) {
+    const bool has_model = !key.empty() && has_model_(key);
+    if (piece.light_source && !has_model && !key.empty()) {
+        ++shapeless_;
+        return;
+    }
+    const double y = elevation_of(piece.level) + piece.elevation;
+    const bool is_tilted = piece.pitch != 0 || piece.roll != 0;
+    // Turned about its middle: first about X, then about Z, then about the vertical.
+    const Vec3 half{piece.size[0] / 2, piece.size[1] / 2, piece.size[2] / 2};
+    Transform middle = placed(piece.place[0], y + (piece.height > 0 ? piece.height / 2 : half.y), piece.place[1], piece.angle);
+    if (is_tilted)
+        middle.rotation =
+            middle.rotation * from_axis_angle({0, 0, 1}, piece.roll) * from_axis_angle({1, 0, 0}, piece.pitch);
+    Entity& entity = add(piece.name, "", middle * Transform{{0, -half.y, 0}, {}});
+    entity.group = piece.group;
+    if (has_model) {
         entity.geometry = ModelReference{key};
     } else {
         boxes_ += key.empty() ? 0 : 1;
-        const Vec3 half{piece.size[0] / 2, piece.size[1] / 2, piece.size[2] / 2};
         entity.geometry = ShapeDefinition{physics::BoxShape{half}};
-        entity.pose.position.y += half.y;
+        entity.pose = middle;
         entity.category = piece.door_or_window ? "door" : "";
         entity.color = piece.color;
         if (piece.door_or_window || !piece.movable) entity.attributes["kind"] = to_value(PhysicalKind::static_body);
@@ -161,8 +182,8 @@ void HomeBuilder::add_piece(const HomePiece& piece) {
     extent_.add(entity.pose.position);
     if (piece.door_or_window) return cut_wall(piece, entity);
     entity.start_asleep = true;
-    const Vec3 half{piece.size[0] / 2, piece.size[1] / 2, piece.size[2] / 2};
-    const Transform middle = placed(piece.place[0], y + half.y, piece.place[1], piece.angle);
+    // What leans or makes a roof was fastened by who drew it.
+    if (is_tilted) entity.attributes["kind"] = to_value(PhysicalKind::static_body);
     loose_.push_back({result_.document.entities.size() - 1, transformed(middle, {-half, half})});
 }
 
@@ -218,9 +239,20 @@ void HomeBuilder::hang_pieces() {
 
 void HomeBuilder::add_ground() {
     if (extent_.is_empty()) extent_.add(Vec3{});
-    const Vec3 half = extent_.half_extents(), middle = extent_.center();
-    const physics::BoxShape box{{half.x + 10, 0.25, half.z + 10}};
-    add_part("Ground", "ground", box, placed(middle.x, -0.25 - ground_depth, middle.z, 0), ground_color);
+    const double x0 = extent_.lower.x - garden, x1 = extent_.upper.x + garden;
+    const double z0 = extent_.lower.z - garden, z1 = extent_.upper.z + garden;
+    const auto add_box = [&](double from_x, double to_x, double from_z, double to_z) {
+        const physics::BoxShape box{{(to_x - from_x) / 2, ground_thickness / 2, (to_z - from_z) / 2}};
+        add_part("Ground", "ground", box,
+                 placed((from_x + to_x) / 2, -ground_thickness / 2 - ground_depth, (from_z + to_z) / 2, 0), ground_color);
+    };
+    if (cellar_.is_empty()) return add_box(x0, x1, z0, z1);
+    // Around the cellar, which would have the ground across its rooms.
+    const Vec3 low = cellar_.lower, high = cellar_.upper;
+    add_box(x0, low.x, z0, z1);
+    add_box(high.x, x1, z0, z1);
+    add_box(low.x, high.x, z0, low.z);
+    add_box(low.x, high.x, high.z, z1);
 }
 
 void HomeBuilder::look_at_all() {

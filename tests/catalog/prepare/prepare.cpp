@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "catalog/prepare/appearance.h"
 #include "catalog/prepare/part_measurement.h"
 #include "catalog/prepare/placement.h"
 #include "catalog/prepare/surface_finish.h"
@@ -68,6 +69,24 @@ TEST(MeasureParts, OneForEachMaterialTheLargestFirst) {
     ASSERT_EQ(many.size(), max_parts);
     EXPECT_EQ(many.back().material, "");
     EXPECT_NEAR(many.back().form.shell.volume, 2 * (102 - 31), 1e-4);
+}
+
+TEST(Appearance, ColoursAreThoseOfThePlaceAndPanesAreGlass) {
+    interchange::RawScene scene = square();
+    scene.materials[0] = {.name = "white", .base_color = {1, 1, 1, 1}, .base_color_image = 3};
+    scene.materials.push_back({.name = "metal", .base_color = {1, 1, 1, 1}});
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].name = "sweethome3d_window_pane_on_hinge_1";
+    ImportItem item;
+    item.recolors = {{"", {1, 0, 0}}, {"metal", {0, 1, 0}}, {"nowhere", {0, 0, 1}}};
+    set_appearance(scene, item);
+    using Color = std::array<float, 4>;
+    EXPECT_EQ(scene.materials[0].base_color, (Color{1, 0, 0, 1}));
+    EXPECT_EQ(scene.materials[0].base_color_image, -1) << "a colour takes the texture's place";
+    EXPECT_EQ(scene.materials[1].base_color, (Color{0, 1, 0, 1}));
+    const auto& pane = scene.materials.at(static_cast<std::size_t>(scene.meshes[1].material));
+    EXPECT_EQ(pane.name, "glass");
+    EXPECT_EQ(pane.base_color, (Color{1, 1, 1, 0.5F}));
 }
 
 TEST(Placement, RefusesWhatHasNoExtentOrAnAbsurdOne) {

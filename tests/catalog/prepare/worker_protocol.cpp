@@ -23,6 +23,7 @@ ImportItem an_item() {
                     .tags = {"x", "y"}};
     item.stated_size = {1, 2, 3};
     item.stated_rotation[3] = 0.5;
+    item.recolors = {{"oak", {0.5, 0.25, 0.125}}};
     item.movable = false;
     item.door_or_window = true;
     return item;
@@ -132,6 +133,7 @@ TEST(WorkerProtocol, CarriesEverything) {
     EXPECT_EQ(to_bytes(*item), to_bytes(an_item()));
     EXPECT_EQ(item->tags, an_item().tags);
     EXPECT_EQ(item->stated_size, an_item().stated_size);
+    EXPECT_EQ(item->recolors, an_item().recolors);
     EXPECT_EQ(item->movable, std::optional(false));
     const auto model = model_from_bytes(to_bytes(a_model()));
     ASSERT_TRUE(model);

@@ -8,6 +8,7 @@
 
 #include "foundation/random.h"
 #include "geometry/convex_hull.h"
+#include "geometry/flat_polygon.h"
 #include "math/bounds.h"
 #include "physics/definitions/mass_properties.h"
 #include "physics/definitions/shape_bounds.h"
@@ -217,6 +218,26 @@ TEST(Slabs, HaveTheirPolygonsAreaAndNoPartTwice) {
         }
     }
     EXPECT_GT(tried, 15000);
+}
+
+// The corridor of a real home: corners nearly in line leave a sliver between the pieces, which is no solid.
+TEST(Slabs, HaveNoPartThatIsNoSolid) {
+    SlabShape slab{.points = {{0, 0}, {0, 0.03775}, {-1.0572632, 0.03775}, {-1.0572632, 0.277789}, {-1.0950132, 0.277789},
+                              {-1.0950132, 1.2049887}, {-1.0572632, 1.2049887}, {-1.0572632, 1.4505145}, {-0.9686228, 1.45051},
+                              {-0.9647, 1.4969163}, {-0.0462375, 1.5043295}, {-0.0479074, 1.4504633}, {0.0652328, 1.4504575},
+                              {4.225237, 1.4502457}, {5.687737, 1.4502457}, {5.687737, 1.204989}, {5.725487, 1.204989},
+                              {5.725487, 0.2777893}, {5.687737, 0.2777893}, {5.682884, 0.03775}, {5.169164, 0.03775},
+                              {5.169164, 0}, {4.241964, 0}, {4.241964, 0.03775}, {4.041964, 0.03775}, {4.041964, 0.0004999},
+                              {3.1345263, 0.0004999}, {3.1345263, 0.03775}, {0.9271997, 0.03775}, {0.9271997, 0}},
+                   .thickness = 0.12};
+    ASSERT_TRUE(validate(slab).ok());
+    for (const CompoundChild& part : slab.parts()) {
+        const auto* hull = std::get_if<HullShape>(&part.shape);
+        if (hull == nullptr) continue;
+        const auto built = geometry::build_convex_hull(hull->points, max_hull_vertices);
+        ASSERT_TRUE(built) << built.error().message();
+    }
+    EXPECT_NEAR(mass_properties(slab)->volume, slab.thickness * std::fabs(geometry::signed_area(slab.points)), 1e-5);
 }
 
 TEST(Slabs, RefuseWhatCrossesItself) {

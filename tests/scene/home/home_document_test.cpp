@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <nlohmann/json.hpp>
 
 #include "scene/file/scene_file.h"
@@ -64,6 +65,43 @@ TEST(HomeDocument, IsAHomeWithCutAndMitredWallsThatCanBeOpened) {
     const auto read = document_from_json(json);
     ASSERT_TRUE(read.ok()) << read.error().message();
     EXPECT_EQ(document_to_json(read.value()), json);
+}
+
+// A roof of 4 m, 0.1 m thick, pitched by 30 degrees: 2.087 m high, its middle half of that over its elevation. A positive pitch
+// of the file turns the far end (less Z) up, as Java 3D's rotX(-pitch) does.
+TEST(HomeDocument, TiltedPiecesLieAsInTheHomeAndStay) {
+    SweethomeHome home = flat();
+    const double pitch = -std::numbers::pi / 6, height = 4 * 0.5 + 0.1 * std::cos(pitch);
+    home.pieces = {{.name = "Roof", .id = "home#1", .place = {2, 1}, .elevation = 3, .pitch = pitch, .size = {1, 0.1, 4}, .height = height, .level = "L0"}};
+    for (const bool has_model : {true, false}) {
+        const HomeDocument made = document_of_home(home, "Roof", [&](const std::string&) { return has_model; });
+        const Entity& roof = named(made.document, "Roof");
+        const Vec3 middle = has_model ? transform_point(roof.pose, Vec3{0, 0.05, 0}) : roof.pose.position;
+        EXPECT_LT(distance(middle, {2, 3 + height / 2, 1}), 1e-9);
+        const Vec3 along = rotate(roof.pose.rotation, {0, 0, 1});
+        EXPECT_LT(distance(along, {0, -std::sin(pitch), std::cos(pitch)}), 1e-9);
+        EXPECT_TRUE(roof.attributes.contains("kind"));
+    }
+}
+
+// A cellar of 4 m by 3 m under a house of the same size: no ground reaches into it.
+TEST(HomeDocument, TheGroundLeavesTheCellarFree) {
+    SweethomeHome home = flat();
+    home.levels.push_back({"L2", "Cellar", -2.62, 2.5, 0.12});
+    home.rooms.push_back({"Cellar", {{0, 0}, {4, 0}, {4, 3}, {0, 3}}, std::nullopt, "L2"});
+    const HomeDocument made = document_of_home(home, "House", [](const std::string&) { return false; });
+    int grounds = 0;
+    double area = 0;
+    for (const Entity& entity : made.document.entities) {
+        if (entity.category != "ground") continue;
+        ++grounds;
+        const auto& box = std::get<physics::BoxShape>(std::get<physics::ShapeDefinition>(entity.geometry));
+        const Vec3 half = box.half_extents, at = entity.pose.position;
+        area += 4 * half.x * half.z;
+        EXPECT_FALSE(std::fabs(at.x - 2) < half.x + 2 - 1e-9 && std::fabs(at.z - 1.5) < half.z + 1.5 - 1e-9);
+    }
+    EXPECT_EQ(grounds, 4);
+    EXPECT_NEAR(area, 24 * 23 - 4 * 3, 1e-9);
 }
 
 TEST(HomeDocument, HasBoxesForModelsThatAreNotThereAndStaysAsItIsInARun) {
