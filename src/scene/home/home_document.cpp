@@ -83,7 +83,9 @@ private:
     /// Takes a point of a wall or floor, whose base is at `base`, into the extents.
     void reach(Vec3 point, double base) {
         extent_.add(point);
-        if (base < -near_below) cellar_.add(point);
+        if (base >= -near_below) return;
+        cellar_.add(point);
+        lowest_floor_ = std::min(lowest_floor_, base);
     }
     WallShape& wall_at(std::size_t entity) {
         return std::get<WallShape>(std::get<ShapeDefinition>(result_.document.entities[entity].geometry));
@@ -104,6 +106,7 @@ private:
     HomeDocument result_;
     Bounds extent_;
     Bounds cellar_;  // of walls and floors below the ground
+    double lowest_floor_ = 0;
     std::vector<std::size_t> walls_;  // places in the document's entities
     struct Placed {
         std::size_t entity;
@@ -241,14 +244,15 @@ void HomeBuilder::add_ground() {
     if (extent_.is_empty()) extent_.add(Vec3{});
     const double x0 = extent_.lower.x - garden, x1 = extent_.upper.x + garden;
     const double z0 = extent_.lower.z - garden, z1 = extent_.upper.z + garden;
-    const auto add_box = [&](double from_x, double to_x, double from_z, double to_z) {
+    const auto add_box = [&](double from_x, double to_x, double from_z, double to_z, double top = -ground_depth) {
         const physics::BoxShape box{{(to_x - from_x) / 2, ground_thickness / 2, (to_z - from_z) / 2}};
         add_part("Ground", "ground", box,
-                 placed((from_x + to_x) / 2, -ground_thickness / 2 - ground_depth, (from_z + to_z) / 2, 0), ground_color);
+                 placed((from_x + to_x) / 2, top - ground_thickness / 2, (from_z + to_z) / 2, 0), ground_color);
     };
     if (cellar_.is_empty()) return add_box(x0, x1, z0, z1);
-    // Around the cellar, which would have the ground across its rooms.
+    // Around the cellar and below it: it would have the ground across its rooms.
     const Vec3 low = cellar_.lower, high = cellar_.upper;
+    add_box(low.x, high.x, low.z, high.z, lowest_floor_ - ground_depth);
     add_box(x0, low.x, z0, z1);
     add_box(high.x, x1, z0, z1);
     add_box(low.x, high.x, z0, low.z);
