@@ -116,15 +116,6 @@ void join_pieces(const FlatPolygon& corners, std::vector<Loop>& pieces) {
     }
 }
 
-// Whether a convex polygon is thinner than any solid (flatness_tolerance in convex_hull.cpp, there of half the extent).
-bool is_sliver(const FlatPolygon& piece) {
-    constexpr double thinnest = 1e-5;
-    double longest = 0;
-    for (const FlatPoint& a : piece)
-        for (const FlatPoint& b : piece) longest = std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1]));
-    return signed_area(piece) < thinnest * longest * longest;
-}
-
 // The part on one side of a value of the first coordinate: above it where `sign` is 1, below where it is -1.
 FlatPolygon half(const FlatPolygon& polygon, double at, double sign) {
     FlatPolygon left;
@@ -171,7 +162,7 @@ std::vector<FlatPolygon> convex_pieces(const FlatPolygon& polygon) {
     for (const Loop& loop : loops) {
         FlatPolygon piece;
         for (const std::size_t corner : loop) piece.push_back(corners[corner]);
-        if (!is_sliver(piece)) pieces.push_back(std::move(piece));
+        pieces.push_back(std::move(piece));
     }
     return pieces;
 }

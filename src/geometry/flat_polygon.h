@@ -22,8 +22,7 @@ std::optional<std::pair<std::size_t, std::size_t>> crossing_sides(const FlatPoly
 
 /// Convex polygons that fill a simple one without overlap, each with positive area: triangles by cutting off ears
 /// (G. Meisters, "Polygons have ears", 1975), joined while they stay convex (S. Hertel, K. Mehlhorn, 1983), which makes
-/// at most four times as many as needed. Slivers that are no solid at any thickness (geometry/convex_hull.h) are left
-/// out. Empty where the polygon has no area.
+/// at most four times as many as needed. Empty where the polygon has no area.
 std::vector<FlatPolygon> convex_pieces(const FlatPolygon& polygon);
 
 /// The part of a convex polygon between two values of the first coordinate; empty where there is none.

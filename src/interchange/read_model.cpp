@@ -136,9 +136,13 @@ Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     if (extension_of(path).empty()) {
         const std::string stored = source.find(path);
         if (stored.empty()) return Error{where, "no such file"};
-        const auto bytes = source.read(stored);
-        if (!bytes) return Error{where, bytes.error().why, bytes.error().remedy};
-        if (const std::string_view extension = extension_by_content(*bytes); !extension.empty()) {
+        std::string_view extension;
+        {
+            const auto bytes = source.read(stored);
+            if (!bytes) return Error{where, bytes.error().why, bytes.error().remedy};
+            extension = extension_by_content(*bytes);
+        }
+        if (!extension.empty()) {
             const RenamedSource renamed(source, stored, extension);
             return read_model(renamed, renamed.alias());
         }

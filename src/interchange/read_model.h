@@ -19,8 +19,8 @@ std::string extension_of(const std::filesystem::path& file);
 const std::vector<std::string>& model_extensions();
 /// Whether the file's extension, in any case, is one of model_extensions().
 bool is_model_file(const std::filesystem::path& file);
-/// The extension that the content asks for where a file's name says nothing, as of models in homes of Sweet Home 3D; `head`: its first
-/// bytes, 4096 are enough. Empty where they are of no format that is known by them.
+/// The extension that the content asks for where a file's name says nothing, as of models in homes of Sweet Home 3D;
+/// `head`: its first bytes, 4096 are enough. Empty where they are of no format that is known by them.
 std::string_view extension_by_content(std::span<const std::uint8_t> head);
 /// Why files of this name cannot be read: another format, or one (VRML) that this build was made without.
 Result<void> can_read(const std::filesystem::path& file);
@@ -39,8 +39,8 @@ bool is_without_triangles(const Error& error);
 /// VRML's unit is the metre, Y up.
 Result<RawScene> read_model(const std::filesystem::path& file);
 
-/// As above from any source, e.g. an archive; `path` is inside the source. A file whose name has no extension is of the format that its
-/// content tells.
+/// As above from any source, e.g. an archive; `path` is inside the source. A file whose name has no extension is of the
+/// format that its content tells.
 Result<RawScene> read_model(const FileSource& source, const std::string& path);
 
 }  // namespace embody::interchange

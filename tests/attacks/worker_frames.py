@@ -6,7 +6,7 @@ import struct
 import subprocess
 
 READY, ITEM, PREPARED, FAILED, OUT_OF_MEMORY = range(1, 6)
-VERSION = 4
+VERSION = 5
 
 
 def hash_of(payload: bytes) -> int:
@@ -31,7 +31,7 @@ def item(path: str, name: str = "t") -> bytes:
     texts = [path, "", path, "", name, "source", "licence", "author", "chair", ""]
     rotation = (1, 0, 0, 0, 1, 0, 0, 0, 1)
     return (b"".join(map(text, texts)) + struct.pack("<Q", 1) + text("tag") + struct.pack("<B3d", 0, 0, 0, 0) + struct.pack("<Bd", 0, 0) +
-            struct.pack("<9d", *rotation) + bytes([0, 0]))
+            struct.pack("<9d", *rotation) + struct.pack("<Q", 0) + bytes([0, 0]))
 
 
 def failed(where: str, why: str) -> bytes:

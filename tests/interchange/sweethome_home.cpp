@@ -75,8 +75,9 @@ TEST_F(SweethomeHomeFile, IsReadInMetresWithZDownThePlan) {
 TEST_F(SweethomeHomeFile, FindsModelsWithoutAnExtension) {
     const auto file = folder_.write_zip(
         "numbers.sh3d",
-        {{"Home.xml", "<home><pieceOfFurniture name='Bed' x='0' y='0' width='9' depth='9' height='9' model='1'/>"
-                      "<pieceOfFurniture name='Note' x='0' y='0' width='9' depth='9' height='9' model='2'/></home>"},
+        {{"Home.xml",
+          "<home><pieceOfFurniture name='Bed' x='0' y='0' width='9' depth='9' height='9' model='1'/>"
+          "<pieceOfFurniture name='Note' x='0' y='0' width='9' depth='9' height='9' model='2'/></home>"},
          {"1", test::cube_obj()},
          {"2", "not a model"}});
     const auto read = read_sweethome_home(file);
@@ -94,8 +95,10 @@ TEST_F(SweethomeHomeFile, FindsModelsWithoutAnExtension) {
 
 TEST_F(SweethomeHomeFile, PiecesHaveTheirColoursAndTilt) {
     const auto read = read_sweethome_home(home(
-        "<home><pieceOfFurniture name='A' x='0' y='0' width='9' depth='9' height='9' model='1/chair.obj' color='FFFF0000' "
-        "pitch='0.5' heightInPlan='12'><material name='seat' color='FF00FF00'/><material name='leg'><texture/></material>"
+        "<home><pieceOfFurniture name='A' x='0' y='0' width='9' depth='9' height='9' model='1/chair.obj' "
+        "color='FFFF0000' "
+        "pitch='0.5' heightInPlan='12'><material name='seat' color='FF00FF00'/><material "
+        "name='leg'><texture/></material>"
         "</pieceOfFurniture><pieceOfFurniture name='B' x='0' y='0' width='9' depth='9' height='9' model='1/chair.obj'/>"
         "</home>"));
     ASSERT_TRUE(read.ok()) << read.error().message();
@@ -108,13 +111,14 @@ TEST_F(SweethomeHomeFile, PiecesHaveTheirColoursAndTilt) {
     EXPECT_EQ(read->notes.size(), 1U) << "a texture is left out";
 }
 
-// Half a circle above the plan's line from (0, 0) to (4, 0), and three quarters of one.
+// Arcs above and below the plan's line from (0, 0) to (4, 0), up to nearly a whole circle.
 TEST_F(SweethomeHomeFile, CurvedWallsAreRowsOfStraightOnes) {
     for (const double arc : {0.3, std::numbers::pi / 2, std::numbers::pi, 1.5 * std::numbers::pi, -0.3, -2.0, -5.0}) {
         char wall[256];
         std::snprintf(wall, sizeof wall,
                       "<home><wall xStart='0' yStart='0' xEnd='400' yEnd='0' height='200' heightAtEnd='300' "
-                      "thickness='12' arcExtent='%.9f'/></home>", arc);
+                      "thickness='12' arcExtent='%.9f'/></home>",
+                      arc);
         const auto read = read_sweethome_home(home(wall));
         ASSERT_TRUE(read.ok());
         const auto& walls = read->walls;
@@ -122,7 +126,8 @@ TEST_F(SweethomeHomeFile, CurvedWallsAreRowsOfStraightOnes) {
         EXPECT_EQ(walls.front().start, (HomePoint{0, 0}));
         EXPECT_EQ(walls.back().end, (HomePoint{4, 0}));
         EXPECT_NEAR(walls.back().end_height, 3, 1e-9);
-        // A circle through both ends on which the wall turns by `arc` has this radius; it bulges up the plan for arc > 0.
+        // A circle through both ends on which the wall turns by `arc` has this radius; it bulges up the plan for arc >
+        // 0.
         const double radius = 2 / std::fabs(std::sin(arc / 2));
         double length = 0, highest = 0;
         for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -133,9 +138,20 @@ TEST_F(SweethomeHomeFile, CurvedWallsAreRowsOfStraightOnes) {
             highest = std::max(highest, (arc > 0 ? -1 : 1) * walls[i].end[1]);
         }
         EXPECT_NEAR(length, radius * std::fabs(arc), 0.02 * length) << arc;
-        EXPECT_NEAR(highest, radius * (1 - std::cos(arc / 2)), 0.1 * radius) << arc;
+        EXPECT_NEAR(highest, radius * (1 - std::cos(arc / 2)), 0.02) << arc;
         EXPECT_TRUE(read->notes.empty());
     }
+}
+
+TEST_F(SweethomeHomeFile, CurvedWallsCountByTheirPieces) {
+    std::string walls = "<home><wall xStart='0' yStart='0' xEnd='1000000' yEnd='0' thickness='12' arcExtent='6.282'/>";
+    for (int i = 0; i < 4000; ++i)
+        walls += "<wall xStart='0' yStart='0' xEnd='10000' yEnd='0' thickness='12' arcExtent='3.14'/>";
+    const auto read = read_sweethome_home(home(walls + "</home>"));
+    ASSERT_TRUE(read.ok());
+    EXPECT_LT(read->walls.size(), 100'100U);
+    ASSERT_EQ(read->notes.size(), 2U);
+    EXPECT_NE(read->notes[1].find("1 walls"), std::string::npos) << "a radius of some hundred kilometres";
 }
 
 TEST_F(SweethomeHomeFile, WithoutAPlanInXmlSaysWhatToDo) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "catalog/prepare/geometry_measurement.h"
 #include "catalog/prepare/appearance.h"
+#include "catalog/prepare/geometry_measurement.h"
 #include "catalog/prepare/placement.h"
 #include "catalog/prepare/quality.h"
 #include "catalog/prepare/surface_finish.h"

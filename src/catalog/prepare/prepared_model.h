@@ -27,7 +27,7 @@ struct ImportItem {
     std::optional<double> stated_unit;                 ///< m a unit of the file, where its collection states it
     std::array<double, 9> stated_rotation{1, 0, 0, 0, 1,
                                           0, 0, 0, 1};  ///< rows; the catalogue's correction of the file's axes
-    std::vector<interchange::Recolor> recolors;  ///< of the place that it comes from
+    std::vector<interchange::Recolor> recolors;         ///< of the place that it comes from
     std::optional<bool> movable;
     bool door_or_window = false;
     bool light_source = false;  ///< what shines may have no shape; not sent to the worker

@@ -15,7 +15,7 @@ namespace embody::catalog {
 /// `failed` or, an error as well, `out_of_memory`.
 enum class FrameKind : std::uint32_t { ready = 1, item = 2, prepared = 3, failed = 4, out_of_memory = 5 };
 
-inline constexpr std::uint32_t protocol_version = 4;
+inline constexpr std::uint32_t protocol_version = 5;
 inline constexpr std::size_t frame_header_size = 16;
 inline constexpr std::size_t frame_hash_size = 8;
 inline constexpr std::size_t max_payload_bytes = std::size_t{256} << 20;  ///< bytes; more is refused on both ends

@@ -104,7 +104,8 @@ void add_materials(const aiScene& read, const FileSource& source, const std::str
         if (out.name.empty()) out.name = "material " + std::to_string(i + 1);
         read_colors(material, reading, out);
         read_surface(material, reading, out);
-        if (const NamedMaterial* named = named_material(out.name); named != nullptr && reading.names_stand_for_materials)
+        if (const NamedMaterial* named = named_material(out.name);
+            named != nullptr && reading.names_stand_for_materials)
             read_name(*named, out);
         if (const std::string reference = texture_reference(material); !reference.empty()) {
             out.base_color_image = index_of(textures, read, reference);

@@ -14,8 +14,8 @@ namespace embody::interchange {
 struct MaterialReading {
     bool linear_colors =
         false;  ///< glTF's factors are linear; the colours of older formats are meant for the screen (sRGB)
-    bool texture_replaces_color = true;  ///< older exporters leave a gray or black colour beside a texture
-    bool double_sided = true;            ///< where the format cannot say: both, as its surfaces are often open
+    bool texture_replaces_color = true;      ///< older exporters leave a gray or black colour beside a texture
+    bool double_sided = true;                ///< where the format cannot say: both, as its surfaces are often open
     bool names_stand_for_materials = false;  ///< an OBJ without a material library (named_materials.h)
 };
 

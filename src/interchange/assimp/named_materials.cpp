@@ -6,8 +6,8 @@
 namespace embody::interchange {
 namespace {
 
-// Name, Kd, Ns and d of Java 3D 1.5.2 (com.sun.j3d.loaders.objectfile), of the names that Sweet Home 3D's furniture has;
-// rounded. Ns is 0 where no highlight is asked for (illum 0 and 1).
+// Name, Kd, Ns and d of Java 3D 1.5.2 (com.sun.j3d.loaders.objectfile), of the names that Sweet Home 3D's furniture
+// has; rounded. Ns is 0 where no highlight is asked for (illum 0 and 1).
 constexpr auto materials = std::to_array<NamedMaterial>({
     {"amber", {0.576F, 0.268F, 0.0F}, 60.0F, 1.0F},
     {"archwhite", {0.996F, 0.996F, 0.996F}, 0.0F, 1.0F},

@@ -13,7 +13,7 @@ namespace embody::interchange {
 
 /// Another colour for what a model is made of.
 struct Recolor {
-    std::string material;          ///< of this name in the model; empty: all that light does not pass through
+    std::string material;           ///< of this name in the model; empty: all that light does not pass through
     std::array<double, 3> color{};  ///< linear red, green, blue; takes a texture's place
     auto operator<=>(const Recolor&) const = default;
 };
@@ -31,7 +31,7 @@ struct SweethomePiece {
     double elevation = 0;          ///< of its base above the floor when new, m
     std::array<double, 9> rotation{1, 0, 0, 0, 1,
                                    0, 0, 0, 1};  ///< rows; turns the file's axes before the size is measured
-    std::vector<Recolor> recolors;  ///< of a home, in the order in which they are done
+    std::vector<Recolor> recolors;               ///< of a home, in the order in which they are done
     bool movable = true;
     bool door_or_window = false;
     bool light_source = false;

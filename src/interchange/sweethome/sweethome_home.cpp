@@ -168,13 +168,19 @@ void PlanReader::read_wall(const pugi::xml_node& node) {
     if (!wall.color) wall.color = color_of(node, "rightSideColor");
     wall.level = node.attribute("level").value();
     const double arc = number_of(node, "arcExtent").value_or(0);
-    if (std::fabs(arc) > 1e-3 && std::fabs(arc) < 2 * std::numbers::pi - 1e-3)
-        add_curved_wall(wall, arc);
-    else
+    if (std::fabs(arc) < 1e-3 || std::fabs(arc) > 2 * std::numbers::pi - 1e-3) {
         home_.walls.push_back(std::move(wall));
+        return;
+    }
+    if (std::hypot(*x1 - *x0, *z1 - *z0) / 2 > largest * std::fabs(std::sin(arc / 2))) {
+        ++bad_walls_;
+        return;
+    }
+    add_curved_wall(wall, arc);
 }
 
-// The centre is where start and end are seen at the angle of the arc; the wall goes about it from start to end by `arc`.
+// The centre is where start and end are seen at the angle of the arc; the wall goes about it from start to end by
+// `arc`.
 void PlanReader::add_curved_wall(const HomeWall& wall, double arc) {
     const double x = wall.end[0] - wall.start[0], z = wall.end[1] - wall.start[1];
     const double beside = 0.5 / std::tan(arc / 2);
@@ -183,6 +189,7 @@ void PlanReader::add_curved_wall(const HomeWall& wall, double arc) {
     const double step = 2 * std::acos(std::max(1 - max_sagitta / radius, 0.7));
     const int count = std::clamp(static_cast<int>(std::ceil(std::fabs(arc) / step)), 2, max_arc_pieces);
     HomeWall piece = wall;
+    count_ += static_cast<std::size_t>(count - 1);
     for (int i = 1; i <= count; ++i) {
         const double part = static_cast<double>(i) / count, c = std::cos(part * arc), s = std::sin(part * arc);
         const double rx = wall.start[0] - center[0], rz = wall.start[1] - center[1];
@@ -251,10 +258,10 @@ std::optional<std::uint64_t> PlanReader::content_of(const std::string& path) {
     std::optional<std::uint64_t> content;
     if (bytes_read_ < max_bytes_of_models) {
         const auto bytes = archive_.read(path, max_model_bytes);
+        bytes_read_ += bytes.ok() ? bytes->size() : max_model_bytes;
         if (bytes.ok() && (is_model_file(path) || !extension_by_content(*bytes).empty())) {
             StateHash hash;
             hash.add_bytes(bytes->data(), bytes->size());
-            bytes_read_ += bytes->size();
             content = hash.value();
         }
     }

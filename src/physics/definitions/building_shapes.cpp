@@ -155,9 +155,20 @@ std::vector<CompoundChild> WallShape::parts() const {
     return found;
 }
 
+// Whether a piece of a slab is so thin that a hull of it is flat: flatness_tolerance in geometry/convex_hull.cpp, there
+// of half the largest extent.
+bool is_sliver(const FlatPolygon& piece, double thickness) {
+    constexpr double thinnest = 1e-5;
+    double longest = 0;
+    for (const FlatPoint& a : piece)
+        for (const FlatPoint& b : piece) longest = std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1]));
+    return 2 * geometry::signed_area(piece) < thinnest * longest * std::max(longest, thickness);
+}
+
 std::vector<CompoundChild> SlabShape::parts() const {
     std::vector<CompoundChild> found;
     for (const FlatPolygon& piece : geometry::convex_pieces(points)) {
+        if (is_sliver(piece, thickness)) continue;
         const Bounds around = bounds_of(piece);
         const bool is_box = piece.size() == 4 && std::all_of(piece.begin(), piece.end(), [&](FlatPoint p) {
                                 return (p[0] == around.lower.x || p[0] == around.upper.x) &&

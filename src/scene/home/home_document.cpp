@@ -19,9 +19,9 @@ using interchange::HomePiece;
 using physics::ShapeDefinition;
 using physics::WallShape;
 
-constexpr double ground_depth = 0.005;  // m: so much lower than floors the ground lies
+constexpr double ground_depth = 0.005;                 // m: so much lower than floors the ground lies
 constexpr double ground_thickness = 0.5, garden = 10;  // m; so far the ground reaches beyond the home
-constexpr double near_below = 0.05;     // m: what is nearer below a thing carries it
+constexpr double near_below = 0.05;                    // m: what is nearer below a thing carries it
 constexpr std::array<double, 3> wall_color{0.82, 0.8, 0.76}, floor_color{0.35, 0.27, 0.19},
     ground_color{0.18, 0.26, 0.12};
 
@@ -53,7 +53,8 @@ public:
             result_.notes.push_back(std::to_string(boxes_) +
                                     " models of the home could not be read: boxes stand for them");
         if (shapeless_ > 0)
-            result_.notes.push_back(std::to_string(shapeless_) + " light sources have no shape and are left out");
+            result_.notes.push_back(std::to_string(shapeless_) +
+                                    " light sources have no shape, or none that could be read, and are left out");
         return std::move(result_);
     }
 
@@ -129,7 +130,9 @@ void HomeBuilder::add_walls() {
         walls_.push_back(result_.document.entities.size());
         add_part("Wall", "wall", std::move(shape), placed(wall.start[0], y, wall.start[1], std::atan2(-z, x)),
                  wall.color.value_or(wall_color));
-        for (const auto& end : {wall.start, wall.end}) reach({end[0], y + wall.height, end[1]}, y);
+        const double half = wall.thickness / 2;
+        for (const auto& end : {wall.start, wall.end})
+            for (const double side : {-half, half}) reach({end[0] + side, y + wall.height, end[1] + side}, y);
     }
 }
 
@@ -166,7 +169,8 @@ void HomeBuilder::add_piece(const HomePiece& piece) {
     const bool is_tilted = piece.pitch != 0 || piece.roll != 0;
     // Turned about its middle: first about X, then about Z, then about the vertical.
     const Vec3 half{piece.size[0] / 2, piece.size[1] / 2, piece.size[2] / 2};
-    Transform middle = placed(piece.place[0], y + (piece.height > 0 ? piece.height / 2 : half.y), piece.place[1], piece.angle);
+    Transform middle =
+        placed(piece.place[0], y + (piece.height > 0 ? piece.height / 2 : half.y), piece.place[1], piece.angle);
     if (is_tilted)
         middle.rotation =
             middle.rotation * from_axis_angle({0, 0, 1}, piece.roll) * from_axis_angle({1, 0, 0}, piece.pitch);

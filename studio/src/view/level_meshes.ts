@@ -94,6 +94,8 @@ export class LevelMeshes {
       this.group.remove(mesh);
       if (!alone) detach(mesh.geometry);
       mesh.geometry.dispose();
+      // Of two materials the first, which fills the depth buffer, is the mesh's own.
+      if (Array.isArray(mesh.material)) mesh.material[0]!.dispose();
       mesh.dispose();
     }
   }

@@ -442,11 +442,17 @@ export class SoftSkin {
     // A rope that is broken everywhere has nothing to draw.
     const shown = form.count > 0 ? plain.parts : [];
     const levelErrors = Array.from({ length: LEVELS }, (_, level) => SAG * longest * 2 ** (level + 1));
+    this.parts = [];
     const parts: DrawablePart[] = shown.map((part) => {
       const refined = refine(part.geometry, part.matrix, longest);
-      return { geometry: refined.geometry, material: part.material, matrix: NONE, levels: coarserLevels(refined, part, plain.levelErrors ?? [], levelErrors) };
+      const { geometry } = refined;
+      const whole = geometry.index!.count;
+      this.parts.push(new CarriedPart(geometry, form, finder));
+      // Coarser triangles of a broken rope would join its pieces.
+      const isCut = geometry.index!.count < whole;
+      const levels = isCut ? levelErrors.map(() => geometry.index) : coarserLevels(refined, part, plain.levelErrors ?? [], levelErrors);
+      return { geometry, material: part.material, matrix: NONE, levels };
     });
-    this.parts = parts.map(({ geometry }) => new CarriedPart(geometry, form, finder));
     this.drawable = { parts, levelErrors, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
   }
 

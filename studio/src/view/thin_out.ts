@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Box3, BufferAttribute, BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, type TypedArray, Vector3 } from "three";
 
-/** Levels with fewer triangles are left as they are, and those with fewer than one for so many pixels of a box as wide as the model. */
+/** A level is thinned out only where it has more triangles than this, and more than one for so many pixels of the model's square on the screen. */
 const FEW_TRIANGLES = 500;
 const PIXELS_A_TRIANGLE = 4;
 /** A piece that is drawn for several may be so large, in errors of the level. */
@@ -14,6 +14,8 @@ const LARGEST_OUTLINE = 6;
 const MANY_TRIANGLES = 5;
 /** A piece thicker than this part of its size is no leaf: its outline is a tetrahedron. */
 const THICK = 0.25;
+/** An outline is larger than its piece by this at most: that of a ball is 1.65. */
+const LARGEST_SWELL = 1.7;
 /** A piece whose faces look to one side by less than this part of their area has two layers, or is closed. */
 const ONE_SIDED = 0.5;
 
@@ -142,7 +144,8 @@ class Maker {
     // As large as what is seen of the piece: of two layers one, each way.
     const hasLayers = !isThick && facing.length() < ONE_SIDED * area;
     const drawn = faces.reduce((sum, face) => sum + this.face(...(face as [number, number, number])).length(), 0) * (hasLayers ? 2 : 1);
-    const scale = factor * Math.sqrt(area / drawn);
+    // Faces that lie inside a piece are not seen, however large they are together.
+    const scale = factor * Math.min(Math.sqrt(area / drawn), LARGEST_SWELL);
     const inside = new Vector3();
     for (const vertex of [a, b, c, e]) inside.add(place(vertex, point));
     inside.multiplyScalar(1 / 4);
@@ -291,9 +294,14 @@ class Copies {
   private readonly sources: number[] = [];
   private readonly places: number[] = [];
   private readonly own: number;
+  private readonly low: Vector3;
+  private readonly high: Vector3;
 
   constructor(private readonly geometry: BufferGeometry) {
     this.own = geometry.getAttribute("position").count;
+    if (!geometry.boundingBox) geometry.computeBoundingBox();
+    this.low = geometry.boundingBox!.min;
+    this.high = geometry.boundingBox!.max;
   }
 
   get count(): number {
@@ -309,7 +317,8 @@ class Copies {
     this.sources.push(vertex);
     for (let k = 0; k < 3; ++k) {
       const middle = boxes[at + k]!;
-      this.places.push(Math.min(65535, Math.max(0, Math.round(middle + factor * (places[3 * vertex + k]! - middle)))));
+      // Within the part's own box, so that no box around it grows.
+      this.places.push(Math.min(this.high.getComponent(k), Math.max(this.low.getComponent(k), Math.round(middle + factor * (places[3 * vertex + k]! - middle)))));
     }
     return this.total - 1;
   }

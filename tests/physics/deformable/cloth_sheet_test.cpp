@@ -244,7 +244,8 @@ TEST(ClothSheet, FacesThatLeaveItNoRoomPushItNoHarderFromStepToStep) {
 }
 
 TEST(ClothSheet, BodiesThatOverlapInItGetWhatItLoses) {
-    // Two boxes one in the other, with a sheet through both: its nodes have opposing contacts, and come in where the solve had none.
+    // Two boxes one in the other, with a sheet through both: its nodes have opposing contacts, and come in where the
+    // solve had none.
     std::mt19937 engine(11);
     const auto chance = [&](double low, double high) { return std::uniform_real_distribution(low, high)(engine); };
     const auto some = [&](double most) { return Vec3{chance(-most, most), chance(-most, most), chance(-most, most)}; };

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "scene/file/scene_file.h"
 #include "scene/session/session.h"
@@ -67,12 +67,19 @@ TEST(HomeDocument, IsAHomeWithCutAndMitredWallsThatCanBeOpened) {
     EXPECT_EQ(document_to_json(read.value()), json);
 }
 
-// A roof of 4 m, 0.1 m thick, pitched by 30 degrees: 2.087 m high, its middle half of that over its elevation. A positive pitch
-// of the file turns the far end (less Z) up, as Java 3D's rotX(-pitch) does.
+// A roof of 4 m, 0.1 m thick, pitched by 30 degrees: 2.087 m high, its middle half of that over its elevation. A
+// positive pitch of the file turns the far end (less Z) up, as Java 3D's rotX(-pitch) does.
 TEST(HomeDocument, TiltedPiecesLieAsInTheHomeAndStay) {
     SweethomeHome home = flat();
     const double pitch = -std::numbers::pi / 6, height = 4 * 0.5 + 0.1 * std::cos(pitch);
-    home.pieces = {{.name = "Roof", .id = "home#1", .place = {2, 1}, .elevation = 3, .pitch = pitch, .size = {1, 0.1, 4}, .height = height, .level = "L0"}};
+    home.pieces = {{.name = "Roof",
+                    .id = "home#1",
+                    .place = {2, 1},
+                    .elevation = 3,
+                    .pitch = pitch,
+                    .size = {1, 0.1, 4},
+                    .height = height,
+                    .level = "L0"}};
     for (const bool has_model : {true, false}) {
         const HomeDocument made = document_of_home(home, "Roof", [&](const std::string&) { return has_model; });
         const Entity& roof = named(made.document, "Roof");
@@ -102,11 +109,20 @@ TEST(HomeDocument, TheGroundLeavesTheCellarFree) {
         }
         const auto& box = std::get<physics::BoxShape>(std::get<physics::ShapeDefinition>(entity.geometry));
         const Vec3 half = box.half_extents, at = entity.pose.position;
+        EXPECT_GT(std::min(half.x, half.z), 0.01);
         area += 4 * half.x * half.z;
         EXPECT_FALSE(std::fabs(at.x - 2) < half.x + 2 - 1e-9 && std::fabs(at.z - 1.5) < half.z + 1.5 - 1e-9);
     }
     EXPECT_EQ(grounds, 5);
-    EXPECT_NEAR(area, 24 * 23 - 4 * 3, 1e-9);
+    EXPECT_NEAR(area, 24.1 * 23.1 - 4 * 3, 1e-9);  // walls are 0.1 m thick
+}
+
+TEST(HomeDocument, OneWallBelowTheGroundIsACellarToo) {
+    SweethomeHome home = flat();
+    home.levels.push_back({"L2", "Terrace", -0.2, 2.5, 0.12});
+    home.walls.push_back({{0, 0}, {0, 3}, 2.5, 2.5, 0.1, std::nullopt, "L2"});
+    const HomeDocument made = document_of_home(home, "House", [](const std::string&) { return false; });
+    EXPECT_TRUE(document_from_json(document_to_json(made.document)).ok());
 }
 
 TEST(HomeDocument, HasBoxesForModelsThatAreNotThereAndStaysAsItIsInARun) {

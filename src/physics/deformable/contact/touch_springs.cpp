@@ -378,20 +378,20 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
                           std::span<TouchedBody> bodies, std::span<const double> fractions) {
     memory_.clear();
     // The forces are those of the solve: a node that is stopped below would stretch stiff springs that were in it.
-    std::vector<Vec3> leads;
+    leads_.clear();
     for (TouchSpring& spring : springs_) {
-        leads.push_back(spring.lead(node_moves, body_moves));
-        if (spring.acts) spring.felt = spring.force(leads.back());
+        leads_.push_back(spring.lead(node_moves, body_moves));
+        if (spring.acts) spring.felt = spring.force(leads_.back());
     }
     for (std::size_t i = 0; i < springs_.size(); ++i) {
         TouchSpring& spring = springs_[i];
         if (!spring.acts) {
             if (!stop(spring, node_moves, body_moves)) continue;
-            leads[i] = spring.lead(node_moves, body_moves);
+            leads_[i] = spring.lead(node_moves, body_moves);
         }
         if (spring.body == no_body) continue;
         if (!fractions.empty()) spring.felt *= fractions[spring.body];
-        const Vec3 s = leads[i], force = spring.felt;
+        const Vec3 s = leads_[i], force = spring.felt;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
         if (spring.is_recovery) continue;
         Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, true, spring.normal, force, {}};

@@ -202,6 +202,7 @@ private:
     std::vector<TouchSpring> springs_;
     std::vector<Memory> memory_;  // by feature
     std::vector<Place> places_;   // of the bodies, at the substep's end
+    std::vector<Vec3> leads_;     // of the springs, by the solve's moves
 };
 
 }  // namespace embody::physics::deformable
