@@ -160,9 +160,8 @@ std::vector<FlatPolygon> convex_pieces(const FlatPolygon& polygon) {
     join_pieces(corners, loops);
     std::vector<FlatPolygon> pieces;
     for (const Loop& loop : loops) {
-        FlatPolygon piece;
-        for (const std::size_t corner : loop) piece.push_back(corners[corner]);
-        pieces.push_back(std::move(piece));
+        pieces.emplace_back();
+        for (const std::size_t corner : loop) pieces.back().push_back(corners[corner]);
     }
     return pieces;
 }

@@ -158,7 +158,7 @@ std::vector<CompoundChild> WallShape::parts() const {
 // Whether a piece of a slab is so thin that a hull of it is flat: flatness_tolerance in geometry/convex_hull.cpp, there
 // of half the largest extent.
 bool is_sliver(const FlatPolygon& piece, double thickness) {
-    constexpr double thinnest = 1e-5;
+    constexpr double thinnest = 1e-5;  // of the larger extent. Test: Slabs.HaveNoPartThatIsNoSolid
     double longest = 0;
     for (const FlatPoint& a : piece)
         for (const FlatPoint& b : piece) longest = std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1]));
