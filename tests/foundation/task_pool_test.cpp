@@ -46,6 +46,37 @@ TEST_P(EachPool, RunsTasksAfterPausesWithThreadsAwakeOrAsleep) {
     for (const int each : calls) EXPECT_EQ(each, 60);
 }
 
+TEST_P(EachPool, StepsChooseHowManyWorkersRun) {
+    // So many that other numbers are tried. Each task is run once by each worker of its step, and by no other.
+    TaskPool pool(GetParam(), TaskPool::Use::as_many_as_pay);
+    EXPECT_EQ(pool.max_workers(), GetParam());
+    int fewest = GetParam();
+    for (int iteration = 0; iteration < 3000; ++iteration) {
+        const TaskPool::Step step(pool);
+        const int workers = pool.workers();
+        ASSERT_GE(workers, 1);
+        ASSERT_LE(workers, GetParam());
+        fewest = std::min(fewest, workers);
+        std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
+        for (int task = 0; task < 3; ++task)
+            pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
+        for (int worker = 0; worker < GetParam(); ++worker)
+            ASSERT_EQ(calls[static_cast<std::size_t>(worker)], worker < workers ? 3 : 0);
+    }
+    if (GetParam() > 1) {
+        EXPECT_LT(fewest, GetParam());
+    }
+}
+
+TEST_P(EachPool, WithoutAChoiceAllWorkersRunInEachStep) {
+    TaskPool pool(GetParam());
+    for (int iteration = 0; iteration < 2000; ++iteration) {
+        const TaskPool::Step step(pool);
+        ASSERT_EQ(pool.workers(), GetParam());
+        pool.run([](int) {});
+    }
+}
+
 TEST_P(EachPool, WorkersMeetAtTheBarrier) {
     // Each worker adds to its neighbour's number in turns; without the barrier additions would be lost.
     const int workers = GetParam();

@@ -107,13 +107,29 @@ std::unique_ptr<World> make_large_heap(int workers) {
 TEST(Determinism, AnyNumberOfWorkersGivesTheSameBits) {
     const auto one = make_large_heap(1);
     std::vector<std::unique_ptr<World>> others;
-    for (const int workers : {2, 3, 8}) others.push_back(make_large_heap(workers));
+    for (const int workers : {0, 2, 3, 8}) others.push_back(make_large_heap(workers));
     for (int i = 0; i < 30; ++i) {
         one->step();
         for (const auto& world : others) {
             world->step();
             ASSERT_EQ(one->state_hash(), world->state_hash()) << world->settings().workers << " workers, step " << i;
         }
+    }
+}
+
+TEST(Determinism, ANumberOfWorkersThatChangesFromStepToStepGivesTheSameBits) {
+    // As where other programs need the cores by turns.
+    const auto one = make_large_heap(1), other = make_large_heap(1);
+    Random random(3);
+    for (int i = 0; i < 30; ++i) {
+        for (World* world : {one.get(), other.get()}) {
+            WorldSettings settings = world->settings();  // set in both, since bodies wake by it
+            if (world == other.get()) settings.workers = 1 + static_cast<int>(random.below(5));
+            ASSERT_TRUE(world->set_settings(settings));
+            world->step();
+        }
+        ASSERT_EQ(one->state_hash(), other->state_hash()) << other->settings().workers << " workers, step " << i;
+        EXPECT_EQ(other->last_report().workers, other->settings().workers);
     }
 }
 

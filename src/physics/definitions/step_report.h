@@ -45,6 +45,7 @@ enum class StepLimit : std::uint32_t {
 struct StepReport {
     std::uint64_t step = 0;  ///< steps done since the world was made
     double time = 0;         ///< simulated, s
+    int workers = 1;         ///< threads that it ran on: WorldSettings::workers, or where that is 0 as many as paid
     std::uint32_t bodies_active = 0, bodies_wanting_to_sleep = 0, bodies_asleep = 0;  ///< dynamic ones
     std::uint32_t pairs = 0;                                                          ///< found by the broad phase
     std::uint32_t contacts = 0;                                                       ///< touching manifolds

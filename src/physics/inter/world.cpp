@@ -27,8 +27,10 @@ const WorldSettings& World::settings() const { return state_->settings; }
 Result<void> World::set_settings(const WorldSettings& settings) {
     if (auto result = validate(settings); !result) return result;
     if (auto result = choose_lanes(state_->substeps, settings.lanes); !result) return result;
+    const auto use = settings.workers > 0 ? TaskPool::Use::all : TaskPool::Use::as_many_as_pay;
     const int workers = settings.workers > 0 ? settings.workers : TaskPool::workers_that_pay();
-    if (workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(workers);
+    if (workers != state_->workers->max_workers() || use != state_->workers->use())
+        state_->workers = std::make_unique<TaskPool>(workers, use);
     state_->settings = settings;
 
     // A change of gravity, wind or sleeping affects everything.

@@ -57,9 +57,12 @@ void advance(WorldState& world, bool is_long) {
 void step(WorldState& world) {
     constexpr double long_step = 0.2;  // ms; to wake the workers takes 0.015
     TimedZone zone("step");
+    const TaskPool::Step of_workers(*world.workers);
     const bool is_long = world.report.milliseconds > long_step;
     world.events.rope_breaks.clear();
-    world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
+    world.report = {.step = world.report.step + 1,
+                    .time = world.report.time + world.settings.time_step,
+                    .workers = world.workers->workers()};
     if (world.ledger) world.ledger->begin();
     run(world, StepStage::wake, "wake bodies", wake_bodies);  // apply commands, wake touched islands
     run(world, StepStage::fluids, "advance fluids",
