@@ -21,6 +21,10 @@ public:
     void add(std::size_t i, std::size_t k, const Mat3& block);
     void add_diagonal(std::size_t i, double value);
     [[nodiscard]] double diagonal_mean(std::size_t i) const;
+    /// Number (i, k) of the lower triangle, i - 8 <= k <= i; rows and columns are those of numbers, three a block.
+    [[nodiscard]] double element(std::size_t i, std::size_t k) const { return at(i, k); }
+    /// The first column of a row of numbers that can be other than zero.
+    [[nodiscard]] static std::size_t first_column(std::size_t i) { return i / 3 > 2 ? 3 * (i / 3 - 2) : 0; }
     /// Makes row and column i those of the identity: the unknown stays zero.
     void fix(std::size_t i);
     /// False where the matrix is not positive definite or not finite.

@@ -1,43 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/rope/rope_system.h"
 
-#include <cmath>
+#include <algorithm>
+#include <numeric>
 
 namespace embody::physics::deformable {
-
-namespace {
-
-// Lower factor of a dense symmetric matrix, n × n by rows, in place; false where it is not positive definite.
-bool factorize_dense(std::vector<double>& m, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k <= i; ++k) {
-            double sum = m[i * n + k];
-            for (std::size_t j = 0; j < k; ++j) sum -= m[i * n + j] * m[k * n + j];
-            if (i == k && !(sum > 0)) return false;
-            m[i * n + k] = i == k ? std::sqrt(sum) : sum / m[k * n + k];
-        }
-    }
-    return true;
-}
-
-void solve_dense(const std::vector<double>& factor, std::size_t n, std::vector<double>& v) {
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < i; ++k) v[i] -= factor[i * n + k] * v[k];
-        v[i] /= factor[i * n + i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) v[i] -= factor[k * n + i] * v[k];
-        v[i] /= factor[i * n + i];
-    }
-}
-
-double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-    return sum;
-}
-
-}  // namespace
 
 void RopeSystem::reset(std::size_t nodes) {
     band.reset(nodes);
@@ -47,8 +14,9 @@ void RopeSystem::reset(std::size_t nodes) {
     twists.clear();
 }
 
+// Springs between nodes go into the band; the bodies that others touch become unknowns.
 void RopeSystem::add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias) {
-    place_.assign(inertias.size(), 0);
+    body_row_.assign(inertias.size(), none);
     moving_.clear();
     for (const TouchSpring& spring : springs) {
         if (!spring.acts) continue;
@@ -57,112 +25,134 @@ void RopeSystem::add_springs(std::span<const TouchSpring> springs, std::span<con
             for (std::size_t b = 0; b <= a; ++b)
                 band.add(spring.node[a], spring.node[b], (spring.weight[a] * spring.weight[b]) * spring.matrix);
         }
-        if (spring.body == no_body || !inertias[spring.body].moves || place_[spring.body] != 0) continue;
+        if (spring.body == no_body || !inertias[spring.body].moves || body_row_[spring.body] != none) continue;
+        body_row_[spring.body] = 0;
         moving_.push_back(spring.body);
-        place_[spring.body] = moving_.size();
     }
 }
 
-// Columns of the coupling of nodes and bodies, the band's solutions for them, and the bodies' own block.
-void RopeSystem::make_border(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
-                             const std::vector<bool>& fixed, std::vector<double>& load) {
-    const std::size_t n = 6 * moving_.size();
-    columns_.assign(n, std::vector<Vec3>(rhs.size()));
-    border_.assign(n * n, 0);
-    load.assign(n, 0);
-    for (std::size_t m = 0; m < moving_.size(); ++m) {
-        const BodyInertia& inertia = inertias[moving_[m]];
-        for (std::size_t r = 0; r < 3; ++r) {
-            border_[(6 * m + r) * n + 6 * m + r] = inertia.mass;
-            for (std::size_t c = 0; c < 3; ++c)
-                border_[(6 * m + r + 3) * n + 6 * m + c + 3] =
-                    inertia.inertia(static_cast<int>(r), static_cast<int>(c));
+// The unknowns' rows: those of a body come right behind the last node that it touches.
+void RopeSystem::order_unknowns(std::span<const TouchSpring> springs, const std::vector<bool>& fixed) {
+    const std::size_t nodes = rhs.size();
+    first_node_.assign(body_row_.size(), none);
+    last_node_.assign(body_row_.size(), 0);
+    const auto touch = [&](std::uint32_t body, std::size_t node) {
+        if (!moves(body) || fixed[node]) return;
+        first_node_[body] = std::min(first_node_[body], node);
+        last_node_[body] = std::max(last_node_[body], node);
+    };
+    for (const TouchSpring& spring : springs) {
+        if (!spring.acts) continue;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) touch(spring.body, spring.node[a]);
+    }
+    for (const TurnCoupling& coupling : couplings) touch(coupling.body, coupling.node);
+
+    std::ranges::stable_sort(moving_, {}, [&](std::uint32_t body) { return last_node_[body]; });
+    node_row_.resize(nodes);
+    first_column_.clear();
+    const auto add_rows = [&](std::size_t count, std::size_t first) {
+        first_column_.insert(first_column_.end(), count, first);
+    };
+    std::size_t next = 0;  // of moving_
+    for (std::size_t node = 0; node < nodes; ++node) {
+        node_row_[node] = first_column_.size();
+        add_rows(3, node_row_[node < 2 ? 0 : node - 2]);
+        for (; next < moving_.size() && last_node_[moving_[next]] == node; ++next) {
+            const std::uint32_t body = moving_[next];
+            body_row_[body] = first_column_.size();
+            add_rows(6, first_node_[body] == none ? body_row_[body] : node_row_[first_node_[body]]);
         }
     }
+}
+
+void RopeSystem::fill_matrix(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+                             const std::vector<bool>& fixed) {
+    matrix_.reset(first_column_);
+    values_.assign(first_column_.size(), 0);
+    // Nodes.
+    for (std::size_t node = 0; node < rhs.size(); ++node) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            const std::size_t i = 3 * node + r;
+            values_[node_row_[node] + r] = rhs[node][static_cast<int>(r)];
+            for (std::size_t k = BandCholesky::first_column(i); k <= i; ++k)
+                matrix_.at(node_row_[node] + r, node_row_[k / 3] + k % 3) = band.element(i, k);
+        }
+    }
+    // Bodies.
+    const auto add_own = [&](std::size_t first, const Mat3& block) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t c = 0; c <= r; ++c)
+                matrix_.at(first + r, first + c) += block(static_cast<int>(r), static_cast<int>(c));
+        }
+    };
+    for (const std::uint32_t body : moving_) {
+        const std::size_t first = body_row_[body];
+        for (std::size_t r = 0; r < 3; ++r) matrix_.at(first + r, first + r) = inertias[body].mass;
+        add_own(first + 3, inertias[body].inertia);
+    }
+    // What couples them.
+    const auto add_coupling = [&](std::size_t row, std::size_t node, const Vec3& by_node) {
+        for (std::size_t c = 0; c < 3; ++c) matrix_.at(row, node_row_[node] + c) += by_node[static_cast<int>(c)];
+    };
     for (const TouchSpring& spring : springs) {
         if (!spring.acts || !moves(spring.body)) continue;
-        const std::size_t first = first_of(spring.body);
-        for (std::size_t c = 0; c < 6; ++c) {
-            const Vec3 force = spring.matrix * unit_move(c, spring.arm);
+        const std::size_t first = body_row_[spring.body];
+        for (std::size_t r = 0; r < 6; ++r) {
+            const Vec3 force = spring.matrix * unit_move(r, spring.arm);
             for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
-                if (!fixed[spring.node[a]]) columns_[first + c][spring.node[a]] -= spring.weight[a] * force;
+                if (!fixed[spring.node[a]]) add_coupling(first + r, spring.node[a], -spring.weight[a] * force);
             }
-            load[first + c] -= dot(unit_move(c, spring.arm), spring.load);
-            for (std::size_t r = 0; r < 6; ++r)
-                border_[(first + r) * n + first + c] += dot(unit_move(r, spring.arm), force);
+            values_[first + r] -= dot(unit_move(r, spring.arm), spring.load);
+            for (std::size_t c = 0; c <= r; ++c) matrix_.at(first + r, first + c) += dot(unit_move(c, spring.arm), force);
         }
     }
     for (const TurnCoupling& coupling : couplings) {
         if (!moves(coupling.body) || fixed[coupling.node]) continue;
-        const std::size_t first = first_of(coupling.body) + 3;
-        for (std::size_t c = 0; c < 3; ++c)
-            columns_[first + c][coupling.node] += coupling.by_node_and_turn.column(static_cast<int>(c));
+        const std::size_t first = body_row_[coupling.body] + 3;
+        for (std::size_t r = 0; r < 3; ++r)
+            add_coupling(first + r, coupling.node, coupling.by_node_and_turn.column(static_cast<int>(r)));
     }
     for (const TurnStiffness& turn : turns) {
         if (!moves(turn.body)) continue;
-        const std::size_t first = first_of(turn.body) + 3;
-        for (std::size_t r = 0; r < 3; ++r) {
-            load[first + r] += turn.load[static_cast<int>(r)];
-            for (std::size_t c = 0; c < 3; ++c)
-                border_[(first + r) * n + first + c] += turn.stiffness(static_cast<int>(r), static_cast<int>(c));
-        }
-    }
-}
-
-bool RopeSystem::factorize_border() {
-    const std::size_t n = columns_.size();
-    given_ = columns_;
-    for (std::size_t c = 0; c < n; ++c) {
-        band.solve(given_[c]);
-        for (std::size_t r = 0; r < n; ++r) border_[r * n + c] -= product(columns_[r], given_[c]);
-    }
-    return factorize_dense(border_, n);
-}
-
-void RopeSystem::solve_bordered(Unknowns& values) const {
-    const std::size_t n = columns_.size();
-    band.solve(values.nodes);
-    for (std::size_t c = 0; c < n; ++c) values.bodies[c] -= product(columns_[c], values.nodes);
-    solve_dense(border_, n, values.bodies);
-    for (std::size_t c = 0; c < n; ++c) {
-        for (std::size_t i = 0; i < values.nodes.size(); ++i) values.nodes[i] -= values.bodies[c] * given_[c][i];
+        const std::size_t first = body_row_[turn.body] + 3;
+        for (std::size_t r = 0; r < 3; ++r) values_[first + r] += turn.load[static_cast<int>(r)];
+        add_own(first, turn.stiffness);
     }
 }
 
 // With F for all but the twists, G of their derivatives by the unknowns and K of their stiffnesses:
 //   F x + G y = b,  y = K (offset + Gᵀ x)  →  (K⁻¹ + Gᵀ F⁻¹ G) y = offset + Gᵀ F⁻¹ b,  x = F⁻¹ (b - G y).
-bool RopeSystem::solve_twists(const std::vector<bool>& fixed, Unknowns& values, std::vector<double>& moments) const {
+bool RopeSystem::solve_twists(const std::vector<bool>& fixed, std::vector<double>& moments) {
     const std::size_t n = twists.size();
-    std::vector<Unknowns> derivatives, answers;
+    std::vector<std::vector<double>> derivatives, answers;
     for (const TwistMode& twist : twists) {
-        Unknowns& by = derivatives.emplace_back(Unknowns{twist.by_node, std::vector<double>(columns_.size(), 0)});
+        std::vector<double>& by = derivatives.emplace_back(first_column_.size(), 0.0);
+        const auto add = [&](std::size_t row, const Vec3& value) {
+            for (std::size_t c = 0; c < 3; ++c) by[row + c] += value[static_cast<int>(c)];
+        };
         for (std::size_t i = 0; i < fixed.size(); ++i) {
-            if (fixed[i]) by.nodes[i] = {};
+            if (!fixed[i]) add(node_row_[i], twist.by_node[i]);
         }
         for (std::size_t end = 0; end < 2; ++end) {
-            if (!moves(twist.body[end])) continue;
-            for (std::size_t c = 0; c < 3; ++c)
-                by.bodies[first_of(twist.body[end]) + 3 + c] += twist.by_turn[end][static_cast<int>(c)];
+            if (moves(twist.body[end])) add(body_row_[twist.body[end]] + 3, twist.by_turn[end]);
         }
-        answers.push_back(by);
-        solve_bordered(answers.back());
+        matrix_.solve(answers.emplace_back(by));
     }
-    const auto along = [](const Unknowns& by, const Unknowns& x) {
-        double sum = product(by.nodes, x.nodes);
-        for (std::size_t c = 0; c < by.bodies.size(); ++c) sum += by.bodies[c] * x.bodies[c];
-        return sum;
+    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
     };
-    std::vector<double> matrix(n * n, 0);
+    const std::vector<std::size_t> dense(n, 0);
+    EnvelopeCholesky matrix;
+    matrix.reset(dense);
     for (std::size_t r = 0; r < n; ++r) {
-        moments[r] = twists[r].offset + along(derivatives[r], values);
-        for (std::size_t c = 0; c < n; ++c) matrix[r * n + c] = along(derivatives[r], answers[c]);
-        matrix[r * n + r] += twists[r].compliance;
+        moments[r] = twists[r].offset + product(derivatives[r], values_);
+        for (std::size_t c = 0; c <= r; ++c) matrix.at(r, c) = product(derivatives[r], answers[c]);
+        matrix.at(r, r) += twists[r].compliance;
     }
-    if (!factorize_dense(matrix, n)) return false;
-    solve_dense(matrix, n, moments);
+    if (!matrix.factorize()) return false;
+    matrix.solve(moments);
     for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t i = 0; i < values.nodes.size(); ++i) values.nodes[i] -= moments[k] * answers[k].nodes[i];
-        for (std::size_t c = 0; c < values.bodies.size(); ++c) values.bodies[c] -= moments[k] * answers[k].bodies[c];
+        for (std::size_t i = 0; i < values_.size(); ++i) values_[i] -= moments[k] * answers[k][i];
     }
     return true;
 }
@@ -176,18 +166,17 @@ bool RopeSystem::solve(std::span<const TouchSpring> springs, std::span<const Bod
         band.fix(i);
         rhs[i] = {};
     }
-    if (!band.factorize()) return false;
-    Unknowns values{rhs, {}};
-    make_border(springs, inertias, fixed, values.bodies);
-    if (!factorize_border()) return false;
-    solve_bordered(values);
+    order_unknowns(springs, fixed);
+    fill_matrix(springs, inertias, fixed);
+    if (!matrix_.factorize()) return false;
+    matrix_.solve(values_);
     moments.assign(twists.size(), 0);
-    if (!solve_twists(fixed, values, moments)) return false;
-    node_moves = std::move(values.nodes);
-    for (std::size_t m = 0; m < moving_.size(); ++m) {
-        const double* v = &values.bodies[6 * m];
-        body_moves[moving_[m]] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-    }
+    if (!solve_twists(fixed, moments)) return false;
+    const auto vector_at = [&](std::size_t row) { return Vec3{values_[row], values_[row + 1], values_[row + 2]}; };
+    node_moves.resize(rhs.size());
+    for (std::size_t i = 0; i < rhs.size(); ++i) node_moves[i] = vector_at(node_row_[i]);
+    for (const std::uint32_t body : moving_)
+        body_moves[body] = {vector_at(body_row_[body]), vector_at(body_row_[body] + 3)};
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/linear/band_cholesky.h"
+#include "physics/linear/envelope_cholesky.h"
 
 namespace embody::physics::deformable {
 
@@ -34,8 +35,9 @@ struct TurnStiffness {
     Vec3 load;       ///< N m
 };
 
-/// The linear system of one iteration of Newton's method of a rope: its nodes in a band; touched bodies, six unknowns
-/// each, and twists, one each, as the border.
+/// The linear system of one iteration of Newton's method of a rope: its nodes, six unknowns for each touched body, and
+/// twists, one each. A body touches few of the nodes: its unknowns stand behind the last of these, so that the rows of the
+/// factor are no longer than from the first to the last node that a body touches.
 class RopeSystem {
 public:
     /// All zero.
@@ -54,23 +56,20 @@ public:
                std::vector<double>& moments);
 
 private:
-    struct Unknowns {
-        std::vector<Vec3> nodes;
-        std::vector<double> bodies;  // six each, in the order of moving_
-    };
-    [[nodiscard]] bool moves(std::uint32_t body) const { return body != no_body && place_[body] != 0; }
-    [[nodiscard]] std::size_t first_of(std::uint32_t body) const { return 6 * (place_[body] - 1); }
+    static constexpr std::size_t none = ~std::size_t{0};
+    [[nodiscard]] bool moves(std::uint32_t body) const { return body != no_body && body_row_[body] != none; }
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias);
-    void make_border(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
-                     const std::vector<bool>& fixed, std::vector<double>& load);
-    bool factorize_border();
-    void solve_bordered(Unknowns& values) const;
-    bool solve_twists(const std::vector<bool>& fixed, Unknowns& values, std::vector<double>& moments) const;
+    void order_unknowns(std::span<const TouchSpring> springs, const std::vector<bool>& fixed);
+    void fill_matrix(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+                     const std::vector<bool>& fixed);
+    bool solve_twists(const std::vector<bool>& fixed, std::vector<double>& moments);
 
-    std::vector<std::size_t> place_;     // by body: 1 + its index in moving_; 0: none
-    std::vector<std::uint32_t> moving_;  // bodies that are unknowns
-    std::vector<std::vector<Vec3>> columns_, given_;
-    std::vector<double> border_;  // dense, by rows; its lower factor once factorised
+    std::vector<std::uint32_t> moving_;               // bodies that are unknowns
+    std::vector<std::size_t> node_row_, body_row_;    // first row of a node, of a body; none: it is no unknown
+    std::vector<std::size_t> first_column_;           // by row
+    std::vector<std::size_t> first_node_, last_node_;  // by body: that it touches
+    EnvelopeCholesky matrix_;
+    std::vector<double> values_;  // by row: the load, then the solution
 };
 
 }  // namespace embody::physics::deformable
