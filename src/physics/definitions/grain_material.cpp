@@ -54,6 +54,9 @@ Material grain_material(double friction_angle, double diameter) {
     Material material;
     material.friction_static = material.friction_dynamic = heap.sliding;
     material.friction_rolling = std::min(max_rolling, heap.rolling * diameter);
+    // A single grain rolls on a slope of more than 2 c / d: on what is no grain none rolls before it would slide. Else
+    // the lowest layer on a smooth plank carries all others away like rollers.
+    material.friction_rolling_on_others = std::min(max_rolling, heap.sliding * diameter / 2);
     material.friction_torsional = std::min(max_torsion, torsion * diameter);
     return material;
 }

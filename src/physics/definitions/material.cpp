@@ -48,14 +48,16 @@ double combine(CombineRule rule, Side a, Side b) {
 }  // namespace
 
 Result<void> validate(const Material& material) {
-    auto result = first_error(check_number("friction_static", material.friction_static, 0, 2),
-                              check_number("friction_dynamic", material.friction_dynamic, 0, 2),
-                              check_number("friction_rolling", material.friction_rolling, 0, 0.05, "m"),
-                              check_number("friction_torsional", material.friction_torsional, 0, 0.1, "m"),
-                              check_number("restitution", material.restitution, 0, 1),
-                              check_number("restitution_threshold", material.restitution_threshold, 0, 10, "m/s"),
-                              check_rule("friction_combine", material.friction_combine),
-                              check_rule("restitution_combine", material.restitution_combine));
+    auto result =
+        first_error(check_number("friction_static", material.friction_static, 0, 2),
+                    check_number("friction_dynamic", material.friction_dynamic, 0, 2),
+                    check_number("friction_rolling", material.friction_rolling, 0, 0.05, "m"),
+                    check_number("friction_rolling_on_others", material.friction_rolling_on_others, 0, 0.05, "m"),
+                    check_number("friction_torsional", material.friction_torsional, 0, 0.1, "m"),
+                    check_number("restitution", material.restitution, 0, 1),
+                    check_number("restitution_threshold", material.restitution_threshold, 0, 10, "m/s"),
+                    check_rule("friction_combine", material.friction_combine),
+                    check_rule("restitution_combine", material.restitution_combine));
     if (!result) return result;
     if (material.friction_static < material.friction_dynamic) {
         return Error{"friction_static", "must not be less than friction_dynamic"};
@@ -92,6 +94,11 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
 
     // A lever arm is a length of the softer of the two surfaces; the pair has the larger of the two.
     pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);
+    const bool are_alike = a.friction_rolling_on_others > 0 && b.friction_rolling_on_others > 0;
+    if (!are_alike) {
+        pair.friction_rolling =
+            std::max({pair.friction_rolling, a.friction_rolling_on_others, b.friction_rolling_on_others});
+    }
     pair.friction_torsional = std::max(a.friction_torsional, b.friction_torsional);
     pair.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);
     return pair;

@@ -14,9 +14,11 @@ enum class CombineRule { pair_table, own, average, geometric_mean, minimum, maxi
 
 /// Surface of a body.
 struct Material {
-    double friction_static = 0.5;      ///< Coulomb coefficient at rest, 0 … 2, >= friction_dynamic
-    double friction_dynamic = 0.5;     ///< Coulomb coefficient while sliding, 0 … 2
-    double friction_rolling = 0;       ///< lever arm of the rolling resistance, m, 0 … 0.05
+    double friction_static = 0.5;   ///< Coulomb coefficient at rest, 0 … 2, >= friction_dynamic
+    double friction_dynamic = 0.5;  ///< Coulomb coefficient while sliding, 0 … 2
+    double friction_rolling = 0;    ///< lever arm of the rolling resistance, m, 0 … 0.05
+    /// The lever arm against bodies that have none of these, where it is the larger one: grains, m, 0 … 0.05
+    double friction_rolling_on_others = 0;
     double friction_torsional = 0;     ///< lever arm of the spinning resistance, m, 0 … 0.1
     double restitution = 0;            ///< Stronge's energetic coefficient, 0 … 1
     double restitution_threshold = 0;  ///< slower approaches do not bounce, m/s, 0 … 10

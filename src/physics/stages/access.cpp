@@ -78,11 +78,11 @@ SubstepAccess::SubstepAccess(WorldState& world)
 ContinuousAccess::ContinuousAccess(WorldState& world)
     : settings(world.settings),
       joints(world.joints),
-      contacts(world.contacts),
       activity(world.activity),
       balls(world.balls),
       workers(*world.workers),
-      rigid(world.rigid) {}
+      rigid(world.rigid),
+      contacts(world.contacts) {}
 
 DeformableAccess::DeformableAccess(WorldState& world)
     : settings(world.settings),

@@ -148,11 +148,11 @@ struct ContinuousAccess {
     explicit ContinuousAccess(WorldState& world);
     const WorldSettings& settings;
     const JointState& joints;
-    const ContactState& contacts;
     const ActivityState& activity;
     const BallMemory& balls;
     TaskPool& workers;
     RigidState& rigid;
+    ContactState& contacts;
 };
 
 struct DeformableAccess {

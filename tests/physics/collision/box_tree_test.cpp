@@ -8,7 +8,7 @@
 namespace embody::physics::collision {
 namespace {
 
-FloatBox box_at(double x) { return FloatBox(Bounds{{x, 0, 0}, {x + 0.5, 1, 1}}); }
+MovingBox box_at(double x) { return MovingBox(FloatBox(Bounds{{x, 0, 0}, {x + 0.5, 1, 1}})); }
 
 // As a hand does that carries a heap of grains about while the simulation stands.
 TEST(BoxTree, BoxesPutBackWithoutAQueryTakeNoMoreRoom) {

@@ -174,5 +174,107 @@ TEST(BroadPhase, four_thousand_bodies_in_one_point_keep_a_bounded_number_of_pair
     EXPECT_FALSE(phase.has_too_many_pairs());
 }
 
+/// A crowd of boxes in which each travels by its own way in each step, beside one that all have in common.
+struct Crowd {
+    std::vector<Bounds> bounds;
+    std::vector<Vec3> motion;  ///< m in this step
+    Random random;
+    Vec3 common;
+    double longest = 0;  ///< own way, m
+
+    Crowd(std::uint64_t seed, std::uint32_t count, Vec3 origin, Vec3 common_motion, double max_own)
+        : random(seed), common(common_motion), longest(max_own) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            bounds.push_back(cube_at(origin + shaken(2), random.between(0.01, 0.1)));
+            motion.push_back(common + shaken(longest));
+        }
+    }
+    Vec3 shaken(double most) {
+        return {random.between(-most, most), random.between(-most, most), random.between(-most, most)};
+    }
+    [[nodiscard]] Bounds at(std::uint32_t body, double time) const {
+        return {bounds[body].lower + motion[body] * time, bounds[body].upper + motion[body] * time};
+    }
+    // Some go on as before.
+    void advance() {
+        for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+            bounds[i] = at(i, 1);
+            if (i % 3 != 0) motion[i] = common + shaken(longest);
+        }
+    }
+    // At one of 33 moments of the step.
+    [[nodiscard]] bool meet(std::uint32_t a, std::uint32_t b) const {
+        for (int k = 0; k <= 32; ++k) {
+            if (overlaps(at(a, k / 32.0), at(b, k / 32.0))) return true;
+        }
+        return false;
+    }
+};
+
+// Each fifth stands; slow ones, fast ones, near the origin and 10 km from it.
+TEST(BroadPhase, what_meets_on_its_way_is_a_pair) {
+    Random random(21);
+    for (int family = 0; family < 12; ++family) {
+        SCOPED_TRACE(family);
+        TaskPool one_worker(1), three_workers(3);
+        BroadPhase phase, parallel;
+        const double far = family % 2 == 0 ? 0 : 1e4, longest = family % 3 == 0 ? 0.01 : random.between(0.01, 1);
+        Crowd crowd(static_cast<std::uint64_t>(family), 600, {far, -far, 0}, {}, longest);
+        for (std::uint32_t i = 0; i < crowd.bounds.size(); ++i) {
+            if (i % 5 == 0) crowd.motion[i] = {};
+            for (BroadPhase* p : {&phase, &parallel}) p->insert(i, crowd.bounds[i], i % 5 != 0);
+        }
+        std::size_t meetings = 0, missing = 0;
+        for (int step = 0; step < 6; ++step) {
+            for (std::uint32_t i = 0; i < crowd.bounds.size(); ++i) {
+                if (i % 5 == 0) continue;
+                for (BroadPhase* p : {&phase, &parallel}) p->move(i, crowd.bounds[i], crowd.motion[i]);
+                EXPECT_TRUE(phase.holds(i, crowd.bounds[i], crowd.motion[i]));
+                EXPECT_TRUE(phase.covers(i, crowd.bounds[i]));
+            }
+            const auto& pairs = phase.update_pairs(one_worker);
+            EXPECT_EQ(pairs, parallel.update_pairs(three_workers));
+            for (std::uint32_t a = 0; a < crowd.bounds.size(); ++a) {
+                for (std::uint32_t b = a + 1; b < crowd.bounds.size(); ++b) {
+                    if ((a % 5 == 0 && b % 5 == 0) || !crowd.meet(a, b)) continue;
+                    ++meetings;
+                    missing += !std::binary_search(pairs.begin(), pairs.end(), BroadPhase::Pair{a, b});
+                }
+            }
+            crowd.advance();
+            for (std::uint32_t i = 0; i < crowd.bounds.size(); i += 5) crowd.motion[i] = {};
+        }
+        EXPECT_GT(meetings, 100u);
+        EXPECT_EQ(missing, 0u);
+    }
+}
+
+// Galilean invariance: what moves relative to what.
+TEST(BroadPhase, pairs_do_not_depend_on_a_common_speed) {
+    Random random(22);
+    for (int family = 0; family < 8; ++family) {
+        const double longest = random.between(0, 0.1);
+        const auto count_of = [&](Vec3 common) {
+            TaskPool one_worker(1);
+            BroadPhase phase;
+            Crowd crowd(static_cast<std::uint64_t>(family), 1500, {}, common, longest);
+            for (std::uint32_t i = 0; i < crowd.bounds.size(); ++i) phase.insert(i, crowd.bounds[i], true);
+            std::size_t count = 0;
+            for (int step = 0; step < 4; ++step) {
+                for (std::uint32_t i = 0; i < crowd.bounds.size(); ++i) phase.move(i, crowd.bounds[i], crowd.motion[i]);
+                count += phase.update_pairs(one_worker).size();
+                crowd.advance();
+            }
+            return static_cast<double>(count);
+        };
+        const double at_rest = count_of({});
+        for (const double speed : {0.003, 0.03, 0.3, 3.0}) {
+            const Vec3 common{random.between(-speed, speed), random.between(-speed, speed),
+                              random.between(-speed, speed)};
+            EXPECT_NEAR(count_of(common) / at_rest, 1, 0.05) << "family " << family << ", " << speed << " m a step";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace embody::physics::collision

@@ -81,13 +81,14 @@ TEST(MaterialDefinition, RefusesWhatIsOutOfRange) {
     Material good;
     good.friction_dynamic = 0;
     good.friction_static = 2;
-    check_ranges<Material>(good,
-                           {{"friction_static", 0, 2, [](auto& m, double x) { m.friction_static = x; }},
-                            {"friction_dynamic", 0, 2, [](auto& m, double x) { m.friction_dynamic = x; }},
-                            {"friction_rolling", 0, 0.05, [](auto& m, double x) { m.friction_rolling = x; }},
-                            {"friction_torsional", 0, 0.1, [](auto& m, double x) { m.friction_torsional = x; }},
-                            {"restitution", 0, 1, [](auto& m, double x) { m.restitution = x; }},
-                            {"restitution_threshold", 0, 10, [](auto& m, double x) { m.restitution_threshold = x; }}});
+    check_ranges<Material>(
+        good, {{"friction_static", 0, 2, [](auto& m, double x) { m.friction_static = x; }},
+               {"friction_dynamic", 0, 2, [](auto& m, double x) { m.friction_dynamic = x; }},
+               {"friction_rolling", 0, 0.05, [](auto& m, double x) { m.friction_rolling = x; }},
+               {"friction_rolling_on_others", 0, 0.05, [](auto& m, double x) { m.friction_rolling_on_others = x; }},
+               {"friction_torsional", 0, 0.1, [](auto& m, double x) { m.friction_torsional = x; }},
+               {"restitution", 0, 1, [](auto& m, double x) { m.restitution = x; }},
+               {"restitution_threshold", 0, 10, [](auto& m, double x) { m.restitution_threshold = x; }}});
     good.friction_dynamic = 0.5;
     good.friction_static = 0.4;
     EXPECT_EQ(field(validate(good)), "friction_static");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 
@@ -33,6 +34,21 @@ TEST(GrainMaterial, OfASteeperHeapResistsAtLeastAsMuch) {
             EXPECT_GE(material.friction_static, before.friction_static) << angle;
             EXPECT_GE(material.friction_rolling, before.friction_rolling) << angle;
             before = material;
+        }
+    }
+}
+
+// On one another they roll as measured; on a plank, a wall or a floor they slide before they roll: a ball on a slope
+// rolls where the slope is more than twice the lever arm over the diameter.
+TEST(GrainMaterial, RollsOnWhatIsNoGrainNotBeforeItSlides) {
+    for (const double diameter : {1e-3, 0.01, 0.1}) {
+        for (double angle = 7; angle < 45; angle += 4) {
+            const Material grain = grain_material(angle, diameter), plank{.friction_rolling = 1e-5};
+            const Material on_plank = combine(grain, plank, {}), on_grain = combine(grain, grain, {});
+            EXPECT_EQ(on_grain.friction_rolling, grain.friction_rolling);
+            EXPECT_NEAR(2 * on_plank.friction_rolling / diameter, std::min(grain.friction_static, 0.1 / diameter),
+                        1e-12);
+            EXPECT_EQ(combine(plank, grain, {}).friction_rolling, on_plank.friction_rolling);
         }
     }
 }

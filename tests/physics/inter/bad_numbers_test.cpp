@@ -58,7 +58,7 @@ std::uint64_t all_bits(const World& world) {
         for (const double x :
              {d.mass.mass.value_or(-1), d.mass.density, d.linear_damping, d.angular_damping, d.gravity_factor,
               d.sleep_energy_per_mass, world.mass(body), m.friction_static, m.friction_dynamic, m.friction_rolling,
-              m.friction_torsional, m.restitution, m.restitution_threshold}) {
+              m.friction_rolling_on_others, m.friction_torsional, m.restitution, m.restitution_threshold}) {
             hash.add(x);
         }
         for (int k = 0; k < 3; ++k) add(hash, world.inertia(body).column(k));
@@ -162,6 +162,8 @@ std::vector<Field> body_fields() {
         body_field("material.friction_dynamic", [](D& d) -> double& { return d.material.friction_dynamic; }));
     fields.push_back(
         body_field("material.friction_rolling", [](D& d) -> double& { return d.material.friction_rolling; }));
+    fields.push_back(body_field("material.friction_rolling_on_others",
+                                [](D& d) -> double& { return d.material.friction_rolling_on_others; }));
     fields.push_back(
         body_field("material.friction_torsional", [](D& d) -> double& { return d.material.friction_torsional; }));
     fields.push_back(body_field("material.restitution", [](D& d) -> double& { return d.material.restitution; }));

@@ -39,12 +39,12 @@ std::uint64_t size_class(const FloatBox& b) {
 /// The position of a box along the curve through the space that holds all their centres.
 class Curve {
 public:
-    explicit Curve(const std::vector<FloatBox>& boxes) {
+    explicit Curve(const std::vector<MovingBox>& boxes) {
         float high[3] = {-3e38f, -3e38f, -3e38f};
-        for (const FloatBox& b : boxes) {
+        for (const MovingBox& b : boxes) {
             for (int k = 0; k < 3; ++k) {
-                low_[k] = std::min(low_[k], center(b, k));
-                high[k] = std::max(high[k], center(b, k));
+                low_[k] = std::min(low_[k], center(b.box, k));
+                high[k] = std::max(high[k], center(b.box, k));
             }
         }
         float extent = 1e-30f;
@@ -85,13 +85,15 @@ void sort_by_key(std::vector<Entry>& entries, std::vector<Entry>& scratch) {
 
 }  // namespace
 
-FloatBox BoxNode::joined(std::uint32_t mask) const {
-    FloatBox all = BoxNode().box(0);
+MovingBox BoxNode::joined(std::uint32_t mask) const {
+    MovingBox all = BoxNode().box(0);
     for (int k = 0; k < 3; ++k) {
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
             if (!(mask >> lane & 1u)) continue;
-            all.lower[k] = std::min(all.lower[k], lower[k][lane]);
-            all.upper[k] = std::max(all.upper[k], upper[k][lane]);
+            all.box.lower[k] = std::min(all.box.lower[k], lower[k][lane]);
+            all.box.upper[k] = std::max(all.box.upper[k], upper[k][lane]);
+            all.min_displacement[k] = std::min(all.min_displacement[k], min_displacement[k][lane]);
+            all.max_displacement[k] = std::max(all.max_displacement[k], max_displacement[k][lane]);
         }
     }
     return all;
@@ -105,15 +107,16 @@ std::uint32_t BoxTree::used_mask(std::uint32_t node) const {
     return mask;
 }
 
-void BoxTree::set_slot(std::uint32_t slot, const FloatBox& box) {
+void BoxTree::set_slot(std::uint32_t slot, const MovingBox& box) {
     const std::uint32_t node = slot / lanes, lane = slot % lanes;
+    moving_ += static_cast<std::uint32_t>(box.moves()) - static_cast<std::uint32_t>(leaves_[node].moves(lane));
     leaves_[node].set(lane, box);
     changed_[node] = static_cast<std::uint8_t>(changed_[node] | 1u << lane);
     stale_[node] = 1;
     is_stale_ = true;
 }
 
-void BoxTree::insert(std::uint32_t value, const FloatBox& box) {
+void BoxTree::insert(std::uint32_t value, const MovingBox& box) {
     if (value >= slots_.size()) slots_.resize(value + 1, none);
     EMBODY_ASSERT(slots_[value] == none);
     // Boxes that are removed and inserted again and again, with no query between, leave gaps behind.
@@ -142,6 +145,7 @@ void BoxTree::insert(std::uint32_t value, const FloatBox& box) {
 void BoxTree::remove(std::uint32_t value) {
     const std::uint32_t slot = slots_[value], node = slot / lanes, lane = slot % lanes;
     EMBODY_ASSERT(slot != none && values_[slot] == value);
+    moving_ -= static_cast<std::uint32_t>(leaves_[node].moves(lane));
     leaves_[node].clear(lane);
     changed_[node] = static_cast<std::uint8_t>(changed_[node] & ~(1u << lane));
     stale_[node] = 1;
@@ -150,7 +154,7 @@ void BoxTree::remove(std::uint32_t value) {
     --used_;
 }
 
-void BoxTree::set(std::uint32_t value, const FloatBox& box) { set_slot(slots_[value], box); }
+void BoxTree::set(std::uint32_t value, const MovingBox& box) { set_slot(slots_[value], box); }
 
 bool BoxTree::are_all_changed() const {
     std::uint32_t count = 0;
@@ -182,8 +186,8 @@ void BoxTree::join_levels() {
     for (std::uint32_t node = 0; node < sorted_leaves_; ++node) {
         if (!stale_[node]) continue;
         stale_[node] = 0;
-        const FloatBox box = leaves_[node].joined();
-        const float area = half_area(box);
+        const MovingBox box = leaves_[node].joined();
+        const float area = half_area(box.box);
         total_area_ += static_cast<double>(area) - area_[node];
         area_[node] = area;
         levels_[0][node / lanes].set(node % lanes, box);
@@ -212,7 +216,7 @@ void BoxTree::sort() {
     }
     if (!entries_.empty()) {
         const Curve curve(boxes_);
-        for (Entry& entry : entries_) entry.key = curve.key(boxes_[entry.slot]);
+        for (Entry& entry : entries_) entry.key = curve.key(boxes_[entry.slot].box);
         sort_by_key(entries_, other_entries_);
     }
     place_sorted();

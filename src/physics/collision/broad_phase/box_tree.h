@@ -3,48 +3,22 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
-#include "math/bounds.h"
+#include "physics/collision/broad_phase/moving_box.h"
 #include "physics/collision/namespace.h"
 
 namespace embody::physics::collision {
-
-/// Box in floats that holds a box in doubles: 10 km from the origin it is a millimetre larger.
-struct FloatBox {
-    static constexpr double farthest = 1e38;  ///< m
-    float lower[3] = {}, upper[3] = {};
-
-    FloatBox() = default;
-    explicit FloatBox(const Bounds& bounds) {
-        for (int k = 0; k < 3; ++k) {
-            const auto low = static_cast<float>(std::clamp(bounds.lower[k], -farthest, farthest));
-            const auto high = static_cast<float>(std::clamp(bounds.upper[k], -farthest, farthest));
-            lower[k] = low - (std::fabs(low) * 1.2e-7f + 1e-30f);
-            upper[k] = high + (std::fabs(high) * 1.2e-7f + 1e-30f);
-        }
-    }
-    [[nodiscard]] bool contains(const Bounds& b) const {
-        return lower[0] <= b.lower.x && lower[1] <= b.lower.y && lower[2] <= b.lower.z && upper[0] >= b.upper.x &&
-               upper[1] >= b.upper.y && upper[2] >= b.upper.z;
-    }
-    [[nodiscard]] bool overlaps(const FloatBox& b) const {
-        bool meets = true;
-        for (int k = 0; k < 3; ++k) meets = meets && lower[k] <= b.upper[k] && upper[k] >= b.lower[k];
-        return meets;
-    }
-    [[nodiscard]] Bounds bounds() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
-};
 
 /// Eight boxes side by side: one comparison of a query reads all of them.
 struct alignas(32) BoxNode {
     static constexpr std::uint32_t lanes = 8;
     float lower[3][lanes], upper[3][lanes];
+    float min_displacement[3][lanes], max_displacement[3][lanes];  ///< MovingBox
 
     BoxNode() {
         for (std::uint32_t lane = 0; lane < lanes; ++lane) clear(lane);
@@ -52,22 +26,31 @@ struct alignas(32) BoxNode {
     /// Makes a box that nothing overlaps.
     void clear(std::uint32_t lane) {
         for (int k = 0; k < 3; ++k) {
-            lower[k][lane] = 3e38f;
-            upper[k][lane] = -3e38f;
+            lower[k][lane] = min_displacement[k][lane] = 3e38f;
+            upper[k][lane] = max_displacement[k][lane] = -3e38f;
         }
     }
     [[nodiscard]] bool is_clear(std::uint32_t lane) const { return lower[0][lane] > upper[0][lane]; }
-    void set(std::uint32_t lane, const FloatBox& box) {
+    void set(std::uint32_t lane, const MovingBox& moving) {
         for (int k = 0; k < 3; ++k) {
-            lower[k][lane] = box.lower[k];
-            upper[k][lane] = box.upper[k];
+            lower[k][lane] = moving.box.lower[k];
+            upper[k][lane] = moving.box.upper[k];
+            min_displacement[k][lane] = moving.min_displacement[k];
+            max_displacement[k][lane] = moving.max_displacement[k];
         }
     }
-    [[nodiscard]] FloatBox box(std::uint32_t lane) const;
+    [[nodiscard]] bool moves(std::uint32_t lane) const {
+        bool any = false;
+        for (int k = 0; k < 3; ++k) any = any || min_displacement[k][lane] != 0 || max_displacement[k][lane] != 0;
+        return any && !is_clear(lane);
+    }
+    [[nodiscard]] MovingBox box(std::uint32_t lane) const;
     /// The box around the boxes of the mask's lanes.
-    [[nodiscard]] FloatBox joined(std::uint32_t mask = 0xFF) const;
-    /// Bit i: box i overlaps `box`.
+    [[nodiscard]] MovingBox joined(std::uint32_t mask = 0xFF) const;
+    /// Bit i: box i overlaps `box`; both at rest.
     [[nodiscard]] std::uint32_t overlap_mask(const FloatBox& box) const;
+    /// Bit i: box i meets `moving`.
+    [[nodiscard]] std::uint32_t meeting_mask(const MovingBox& moving) const;
 };
 
 /// Tree of boxes, eight to a node, without pointers: the boxes lie sorted along a space-filling curve (G. Morton,
@@ -78,9 +61,9 @@ public:
     static constexpr std::uint32_t none = 0xFFFFFFFFu;
 
     /// `value` is the caller's index, unique within the tree.
-    void insert(std::uint32_t value, const FloatBox& box);
+    void insert(std::uint32_t value, const MovingBox& box);
     void remove(std::uint32_t value);
-    void set(std::uint32_t value, const FloatBox& box);
+    void set(std::uint32_t value, const MovingBox& box);
     /// Brings the upper levels in step with the boxes; to be called after changes and before queries.
     void refresh();
 
@@ -96,11 +79,17 @@ public:
     void change_all();
     void forget_changes() { changed_.assign(changed_.size(), 0); }
 
-    /// Calls visit(node, mask) for each leaf node, from `first` on, with boxes that overlap `box`; ascending in node.
+    /// Calls visit(node, mask) for each leaf node, from `first` on, with boxes that `box` meets; ascending in node.
     template <class Visit>
-    void query(const FloatBox& box, Visit&& visit, std::uint32_t first = 0) const {
-        walk([&box](const BoxNode& node) { return node.overlap_mask(box); }, visit, first);
+    void query(const MovingBox& box, Visit&& visit, std::uint32_t first = 0) const {
+        if (has_moving() || box.moves()) {
+            walk([&box](const BoxNode& node) { return node.meeting_mask(box); }, visit, first);
+        } else {
+            walk([&box](const BoxNode& node) { return node.overlap_mask(box.box); }, visit, first);
+        }
     }
+    /// Whether any box travels.
+    [[nodiscard]] bool has_moving() const { return moving_ > 0; }
     /// As above, for boxes in the mask that `meets(node)` returns.
     template <class Meets, class Visit>
     void walk(Meets&& meets, Visit&& visit, std::uint32_t first = 0) const {
@@ -140,7 +129,7 @@ public:
         const auto visit_nodes = [&](const std::vector<BoxNode>& nodes) {
             for (const BoxNode& node : nodes) {
                 for (std::uint32_t lane = 0; lane < BoxNode::lanes; ++lane) {
-                    if (!node.is_clear(lane)) visit(node.box(lane), depth);
+                    if (!node.is_clear(lane)) visit(node.box(lane).swept(), depth);
                 }
             }
             ++depth;
@@ -159,7 +148,7 @@ private:
     void sort();
     void place_sorted();
     void join_levels();
-    void set_slot(std::uint32_t slot, const FloatBox& box);
+    void set_slot(std::uint32_t slot, const MovingBox& box);
 
     std::vector<BoxNode> leaves_;                // sorted ones, then those with new boxes
     std::vector<std::uint8_t> changed_, stale_;  // by leaf: bits of its boxes; bits that its parents do not have yet
@@ -169,22 +158,25 @@ private:
     std::vector<std::vector<std::uint8_t>> stale_above_;
     std::uint32_t sorted_leaves_ = 0;
     std::uint32_t used_ = 0, sorted_used_ = 0;  // boxes now; when last sorted
+    std::uint32_t moving_ = 0;                  // boxes that travel
     bool is_stale_ = false;
     std::vector<float> area_;                  // by sorted leaf, m²
     double total_area_ = 0, sorted_area_ = 0;  // of the sorted leaves now; when last sorted
 
     std::vector<Entry> entries_, other_entries_;  // scratch of sort
-    std::vector<FloatBox> boxes_;
+    std::vector<MovingBox> boxes_;
     std::vector<std::uint8_t> old_changed_;
 };
 
-inline FloatBox BoxNode::box(std::uint32_t lane) const {
-    FloatBox box;
+inline MovingBox BoxNode::box(std::uint32_t lane) const {
+    MovingBox moving;
     for (int k = 0; k < 3; ++k) {
-        box.lower[k] = lower[k][lane];
-        box.upper[k] = upper[k][lane];
+        moving.box.lower[k] = lower[k][lane];
+        moving.box.upper[k] = upper[k][lane];
+        moving.min_displacement[k] = min_displacement[k][lane];
+        moving.max_displacement[k] = max_displacement[k][lane];
     }
-    return box;
+    return moving;
 }
 
 inline std::uint32_t BoxNode::overlap_mask(const FloatBox& box) const {
@@ -207,6 +199,31 @@ inline std::uint32_t BoxNode::overlap_mask(const FloatBox& box) const {
         for (int k = 0; k < 3; ++k) meets = meets && lower[k][lane] <= box.upper[k] && upper[k][lane] >= box.lower[k];
         mask |= static_cast<std::uint32_t>(meets) << lane;
     }
+    return mask;
+#endif
+}
+
+inline std::uint32_t BoxNode::meeting_mask(const MovingBox& moving) const {
+#if defined(__SSE2__)
+    std::uint32_t mask = 0;
+    for (int half = 0; half < 2; ++half) {
+        __m128 apart = _mm_setzero_ps();
+        const auto load = [half](const float* row) { return _mm_load_ps(row + 4 * half); };
+        for (int k = 0; k < 3; ++k) {
+            const __m128 gap_below = _mm_sub_ps(load(lower[k]), _mm_set1_ps(moving.box.upper[k]));
+            const __m128 gap_above = _mm_sub_ps(_mm_set1_ps(moving.box.lower[k]), load(upper[k]));
+            const __m128 rise = _mm_sub_ps(_mm_set1_ps(moving.max_displacement[k]), load(min_displacement[k]));
+            const __m128 fall = _mm_sub_ps(load(max_displacement[k]), _mm_set1_ps(moving.min_displacement[k]));
+            apart = _mm_or_ps(apart, _mm_or_ps(_mm_cmpgt_ps(gap_below, _mm_max_ps(_mm_setzero_ps(), rise)),
+                                               _mm_cmpgt_ps(gap_above, _mm_max_ps(_mm_setzero_ps(), fall))));
+        }
+        mask |= static_cast<std::uint32_t>(_mm_movemask_ps(apart) ^ 0xF) << (4 * half);
+    }
+    return mask;
+#else
+    std::uint32_t mask = 0;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        mask |= static_cast<std::uint32_t>(box(lane).meets(moving)) << lane;
     return mask;
 #endif
 }

@@ -8,6 +8,7 @@
 #include "foundation/assert.h"
 #include "foundation/zone.h"
 #include "physics/collision/broad_phase/box_tree.h"
+#include "physics/collision/broad_phase/moving_box.h"
 
 namespace embody::physics::collision {
 
@@ -27,11 +28,24 @@ double margin_of(const Bounds& bounds) {
     return std::min(max_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
 }
 
-Bounds enlarged_for(const Bounds& bounds, Vec3 motion) {
-    Bounds fat = enlarged(bounds, margin_of(bounds));
-    fat.lower += min(motion, {});
-    fat.upper += max(motion, {});
-    return fat;
+// Motion in a step, over the margin, below which a body's bounds stay where they are: they hold it for some steps, and
+// while all bodies are slow boxes at rest are compared. Faster bodies' bounds travel with them, so that what flies side
+// by side is as far apart as at rest (BroadPhase.pairs_do_not_depend_on_a_common_speed).
+constexpr double max_resting_motion = 0.25;
+
+// The enlarged bounds of a body that travels by `motion` from `bounds` on.
+MovingBox enlarged_for(const Bounds& bounds, Vec3 motion) {
+    const double margin = margin_of(bounds);
+    const FloatBox fat(enlarged(bounds, margin));
+    const Vec3 m = abs(motion);
+    const bool stays = std::max(m.x, std::max(m.y, m.z)) <= max_resting_motion * margin;
+    return stays ? MovingBox(fat) : MovingBox(fat, motion);
+}
+
+// Whether the enlarged bounds hold the body on all of its path.
+bool holds_path(const MovingBox& fat, const Bounds& bounds, Vec3 motion) {
+    const Vec3 lag = motion - fat.displacement();
+    return fat.box.contains(bounds) && fat.box.contains({bounds.lower + lag, bounds.upper + lag});
 }
 
 bool is_wide(const Bounds& b) {
@@ -61,7 +75,7 @@ double entry_of(const Bounds& box, Vec3 origin, Vec3 direction, double max_dista
 
 struct BroadPhase::State {
     struct Proxy {
-        FloatBox fat;
+        MovingBox fat;
         bool used = false, movable = false, wide = false;
     };
     /// The new pairs that one worker finds.
@@ -89,10 +103,10 @@ struct BroadPhase::State {
         has_changed[body] = 1;
     }
 
-    void place(std::uint32_t body, const Bounds& fat) {
+    void place(std::uint32_t body, const MovingBox& fat) {
         Proxy& proxy = proxies[body];
-        proxy.fat = FloatBox(fat);
-        proxy.wide = is_wide(fat);
+        proxy.fat = fat;
+        proxy.wide = is_wide(fat.box.bounds());
         if (proxy.wide) {
             wide.insert(std::lower_bound(wide.begin(), wide.end(), body), body);
         } else {
@@ -116,16 +130,16 @@ struct BroadPhase::State {
         immovable.refresh();
     }
 
-    // Visits the bodies whose enlarged bounds overlap the box.
+    // Visits the bodies whose enlarged bounds the box meets.
     template <class Visit>
-    void visit_overlapping(const FloatBox& box, Visit&& visit) const {
+    void visit_met(const MovingBox& box, Visit&& visit) const {
         for (const BoxTree* tree : {&movable, &immovable}) {
             tree->query(box, [&](std::uint32_t node, std::uint32_t mask) {
                 for (; mask != 0; mask &= mask - 1) visit(tree->value(node, lowest_lane(mask)));
             });
         }
         for (const std::uint32_t body : wide) {
-            if (proxies[body].fat.overlaps(box)) visit(body);
+            if (proxies[body].fat.meets(box)) visit(body);
         }
     }
 
@@ -155,7 +169,8 @@ void add_pair(std::vector<BroadPhase::Pair>& pairs, std::uint32_t a, std::uint32
 void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) const {
     const std::uint32_t mine = movable.changed_mask(leaf);
     if (mine == 0) return;
-    const FloatBox together = movable.leaf(leaf).joined(mine);
+    const MovingBox together = movable.leaf(leaf).joined(mine);
+    const bool any_moves = movable.has_moving();
     const auto collect = [&](std::vector<std::uint32_t>& leaves) {
         leaves.clear();
         return [&leaves](std::uint32_t node, std::uint32_t) { leaves.push_back(node); };
@@ -165,19 +180,21 @@ void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) c
 
     for (std::uint32_t rest = mine; rest != 0; rest &= rest - 1) {
         const std::uint32_t lane = lowest_lane(rest), body = movable.value(leaf, lane);
-        const FloatBox box = movable.leaf(leaf).box(lane);
+        const MovingBox box = movable.leaf(leaf).box(lane);
         for (const std::uint32_t node : finder.movable_leaves) {
-            std::uint32_t mask = movable.leaf(node).overlap_mask(box);
+            const BoxNode& other = movable.leaf(node);
+            std::uint32_t mask = any_moves ? other.meeting_mask(box) : other.overlap_mask(box.box);
             if (node < leaf) mask &= ~movable.changed_mask(node);
             if (node == leaf) mask &= ~(mine & ((2u << lane) - 1));
             for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, movable.value(node, lowest_lane(mask)));
         }
         for (const std::uint32_t node : finder.immovable_leaves) {
-            std::uint32_t mask = immovable.leaf(node).overlap_mask(box);
+            const BoxNode& other = immovable.leaf(node);
+            std::uint32_t mask = any_moves ? other.meeting_mask(box) : other.overlap_mask(box.box);
             for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, immovable.value(node, lowest_lane(mask)));
         }
         for (const std::uint32_t other : wide) {
-            if (proxies[other].fat.overlaps(box)) add_pair(finder.pairs, body, other);
+            if (proxies[other].fat.meets(box)) add_pair(finder.pairs, body, other);
         }
     }
 }
@@ -186,13 +203,13 @@ void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) c
 void BroadPhase::State::find_pairs_of_immovable_leaf(std::uint32_t leaf, Finder& finder) const {
     for (std::uint32_t mine = immovable.changed_mask(leaf); mine != 0; mine &= mine - 1) {
         const std::uint32_t lane = lowest_lane(mine), body = immovable.value(leaf, lane);
-        const FloatBox box = immovable.leaf(leaf).box(lane);
+        const MovingBox box = immovable.leaf(leaf).box(lane);
         movable.query(box, [&](std::uint32_t node, std::uint32_t mask) {
             mask &= ~movable.changed_mask(node);
             for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, movable.value(node, lowest_lane(mask)));
         });
         for (const std::uint32_t other : wide) {
-            if (proxies[other].movable && proxies[other].fat.overlaps(box)) add_pair(finder.pairs, body, other);
+            if (proxies[other].movable && proxies[other].fat.meets(box)) add_pair(finder.pairs, body, other);
         }
     }
 }
@@ -211,7 +228,7 @@ void BroadPhase::State::find_pairs_of_wide(std::uint32_t body, Finder& finder) c
     for (const std::uint32_t other : wide) {
         const bool is_others = has_changed[other] && other <= body;
         if (is_others || !(proxy.movable || proxies[other].movable)) continue;
-        if (proxies[other].fat.overlaps(proxy.fat)) add_pair(finder.pairs, body, other);
+        if (proxies[other].fat.meets(proxy.fat)) add_pair(finder.pairs, body, other);
     }
 }
 
@@ -244,7 +261,7 @@ void BroadPhase::State::find_new_pairs(TaskPool& workers) {
 void BroadPhase::State::find_few_pairs_of(std::uint32_t body, Finder& finder) const {
     const auto add_lowest = [&](bool are_movable, std::size_t most) {
         finder.partners.clear();
-        visit_overlapping(proxies[body].fat, [&](std::uint32_t other) {
+        visit_met(proxies[body].fat, [&](std::uint32_t other) {
             if (proxies[other].movable != are_movable || (are_movable && other <= body)) return;
             finder.partners.push_back(other);
         });
@@ -323,31 +340,31 @@ void BroadPhase::remove(std::uint32_t body) {
     s.proxies[body].used = false;
 }
 
-// The enlarged bounds are kept while they still hold the body and are not far too large (after a fast move came to
+// The enlarged bounds are kept while they still hold the body and are not far too large (after it shrank or came to
 // rest).
-bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const {
-    const FloatBox& fat = state_->proxies[body].fat;
-    const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * margin_of(bounds));
-    return fat.contains(bounds) && contains(largest, fat.bounds());
+bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 motion) const {
+    const MovingBox& fat = state_->proxies[body].fat;
+    const Bounds largest = enlarged(enlarged_for(bounds, motion).box.bounds(), 4 * margin_of(bounds));
+    return holds_path(fat, bounds, motion) && contains(largest, fat.box.bounds());
 }
 
 bool BroadPhase::covers(std::uint32_t body, const Bounds& bounds) const {
     if (body >= state_->proxies.size() || !state_->proxies[body].used) return false;
-    return state_->proxies[body].fat.contains(bounds);
+    return state_->proxies[body].fat.swept().contains(bounds);
 }
 
-void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) {
+void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 motion) {
     State& s = *state_;
     EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);
-    if (holds(body, bounds, expected_motion)) return;
+    if (holds(body, bounds, motion)) return;
     State::Proxy& proxy = s.proxies[body];
-    const Bounds wanted = enlarged_for(bounds, expected_motion);
-    if (proxy.wide || is_wide(wanted)) {
+    const MovingBox wanted = enlarged_for(bounds, motion);
+    if (proxy.wide || is_wide(wanted.box.bounds())) {
         s.unplace(body);
         s.place(body, wanted);
         return;
     }
-    proxy.fat = FloatBox(wanted);
+    proxy.fat = wanted;
     s.tree_of(proxy).set(body, proxy.fat);
     s.mark_changed(body);
 }
@@ -392,7 +409,7 @@ const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs(TaskPool& workers)
 void BroadPhase::query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const {
     state_->refresh();
     std::vector<std::uint32_t> found;
-    state_->visit_overlapping(FloatBox(box), [&found](std::uint32_t body) { found.push_back(body); });
+    state_->visit_met(MovingBox(FloatBox(box)), [&found](std::uint32_t body) { found.push_back(body); });
     std::sort(found.begin(), found.end());
     for (const std::uint32_t body : found) visit(body);
 }
@@ -407,7 +424,9 @@ void BroadPhase::query_ray(Vec3 origin, Vec3 direction, double max_distance,
         auto operator<=>(const Met&) const = default;
     };
     std::vector<Met> met;
-    const auto entry = [&](const FloatBox& b) { return entry_of(b.bounds(), origin, direction, max_distance); };
+    const auto entry = [&](const MovingBox& b) {
+        return entry_of(b.swept().bounds(), origin, direction, max_distance);
+    };
     const auto meets = [&](const BoxNode& node) {
         std::uint32_t mask = 0;
         for (std::uint32_t lane = 0; lane < BoxNode::lanes; ++lane) {

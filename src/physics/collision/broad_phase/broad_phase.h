@@ -12,9 +12,9 @@
 
 namespace embody::physics::collision {
 
-/// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves
-/// little costs nothing; pairs persist until their enlarged bounds separate. Movable and immovable bodies have a tree
-/// each.
+/// Finds the pairs of bodies whose bounds may meet within a step. Bounds are kept enlarged by a margin, so that a body
+/// that moves little costs nothing; those of faster bodies travel with them, so that of two bodies only the motion
+/// relative to each other counts. Movable and immovable bodies have a tree each.
 class BroadPhase {
 public:
     BroadPhase();
@@ -23,20 +23,20 @@ public:
     /// `body` is the caller's index, unique among the proxies. Two immovable bodies are never a pair.
     void insert(std::uint32_t body, const Bounds& bounds, bool movable);
     void remove(std::uint32_t body);
-    /// Sets new bounds; cheap while they stay within the enlarged ones. `expected_motion` (m, of the next step) gives
-    /// the direction in which to enlarge them.
-    void move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion);
+    /// Sets new bounds, and by how much they travel in the step (m, along a straight line); cheap while the enlarged
+    /// ones hold them on all of the path.
+    void move(std::uint32_t body, const Bounds& bounds, Vec3 motion);
     /// Whether move() would change nothing. May be asked by several threads.
-    [[nodiscard]] bool holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const;
+    [[nodiscard]] bool holds(std::uint32_t body, const Bounds& bounds, Vec3 motion) const;
 
-    /// Whether the body is one of the proxies and its enlarged bounds contain these.
+    /// Whether the body is one of the proxies and its enlarged bounds, all along their path, contain these.
     [[nodiscard]] bool covers(std::uint32_t body, const Bounds& bounds) const;
 
     struct Pair {
         std::uint32_t a = 0, b = 0;  ///< a < b
         friend auto operator<=>(const Pair&, const Pair&) = default;
     };
-    /// All pairs with overlapping enlarged bounds, sorted; each once, whatever the number of workers.
+    /// All pairs whose enlarged bounds meet on their paths, sorted; each once, whatever the number of workers.
     const std::vector<Pair>& update_pairs(TaskPool& workers);
 
     /// Whether more bodies overlap than there may be pairs: then each movable body keeps pairs with `max_partners`
@@ -47,7 +47,8 @@ public:
     /// Changes with each change of the pairs.
     [[nodiscard]] std::uint64_t pairs_version() const;
 
-    /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.
+    /// Calls `visit` for each body whose enlarged bounds overlap `box` somewhere on their path, in ascending order of
+    /// index.
     void query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const;
     /// Calls `visit` for bodies whose bounds the ray may meet; it returns the new maximal distance (smaller after a
     /// hit).

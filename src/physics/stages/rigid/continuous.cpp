@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Bodies that move or turn by more than their thickness in a step are swept over their whole path, and put back to
-// where they first touch what they would pass through. Their velocities stay: the next step finds the touch and solves
-// it as an impact, so momentum is kept whatever is hit. Nothing else of the world is read, so slow worlds cost one
-// comparison a body.
+// Bodies that move or turn by more than their thickness in a step, seen from what is near them, are swept over their
+// whole path, and put back to where they first touch what they would pass through. Their velocities stay: the next step
+// finds the touch and solves it as an impact, so momentum is kept whatever is hit. Slow worlds cost one comparison a
+// body.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,10 +23,19 @@ namespace embody::physics::stages {
 
 namespace {
 
-/// A body's path through the step, and the fraction of it that the body may move.
+/// A body's path through the step, the fraction of it that the body may move, and by how much it then goes along with
+/// what it met, m.
 struct FastBody {
     std::uint32_t body = 0;
     double fraction = 1;
+    Vec3 along;
+};
+
+/// A fast body and another one that it may pass through.
+struct Passing {
+    std::size_t first = 0;    ///< among the fast bodies
+    std::uint32_t other = 0;  ///< body
+    std::size_t second = 0;   ///< among the fast bodies; their number where the other is none
 };
 
 /// Two fast bodies that meet on their paths.
@@ -58,14 +67,35 @@ bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
            turns_fast(world, record, state);
 }
 
+// Whether the step may have moved the body; of others nobody notes where they were at its start.
+bool takes_part(const ContinuousAccess& world, std::uint32_t body) {
+    return world.rigid.record(body).definition.kind != BodyKind::static_body && !world.activity.is_asleep(body);
+}
+
+// The displacement of a point fixed to the body that is at `start` when the step begins.
+Vec3 carried(const ContinuousAccess& world, std::uint32_t body, Vec3 start) {
+    if (!takes_part(world, body)) return {};
+    const BodyState& state = world.rigid.motion[body];
+    const Vec3 arm = start - state.start_center;
+    if (world.rigid.record(body).is_ball) return state.center - state.start_center;  // its turn sweeps nothing
+    return state.center + rotate(state.rotation * conjugate(state.start_rotation), arm) - start;
+}
+
+// The displacement of a body seen from another one, which may turn: what lies on a lorry or in a drum stays where it
+// is.
+Vec3 displacement_from(const ContinuousAccess& world, std::uint32_t body, std::uint32_t other) {
+    const BodyState& state = world.rigid.motion[body];
+    return state.center - state.start_center - carried(world, other, state.start_center);
+}
+
 // Bodies that move side by side do not pass through each other.
 bool may_pass(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
     const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
-    const BodyState &sa = world.rigid.motion[a], &sb = world.rigid.motion[b];
-    const Vec3 displacement = (sa.center - sa.start_center) - (sb.center - sb.start_center);
-    const double thickness = std::min(thickness_of(world, ra), thickness_of(world, rb));
-    return length_squared(displacement) > thickness * thickness || turns_fast(world, ra, sa) ||
-           turns_fast(world, rb, sb);
+    if (turns_fast(world, ra, world.rigid.motion[a])) return true;
+    if (world.rigid.is_dynamic(b) && turns_fast(world, rb, world.rigid.motion[b])) return true;
+    double thickness = thickness_of(world, ra);
+    if (world.rigid.is_dynamic(b)) thickness = std::min(thickness, thickness_of(world, rb));
+    return length_squared(displacement_from(world, a, b)) > thickness * thickness;
 }
 
 bool may_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
@@ -76,6 +106,7 @@ bool may_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
 }
 
 Sweep sweep_of(const ContinuousAccess& world, std::uint32_t body) {
+    if (!takes_part(world, body)) return {world.rigid.pose(body), world.rigid.pose(body), {}};
     BodyState start = world.rigid.motion[body];
     start.center = start.start_center;
     start.rotation = start.start_rotation;
@@ -83,17 +114,43 @@ Sweep sweep_of(const ContinuousAccess& world, std::uint32_t body) {
     return {body_pose(start, center), world.rigid.pose(body), center};
 }
 
-// Bounds of all places of the body on its path: balls around its centre where it turns much.
-Bounds swept_bounds(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep) {
+// Bounds of all that the body turns through, as if its centre stayed where it was at the step's start: balls around it
+// where it turns much.
+Bounds turned_bounds(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep, Vec3 motion) {
     const BodyRecord& record = world.rigid.record(body);
-    Bounds swept = record.shape->bounds(sweep.start);
-    swept.add(record.shape->bounds(sweep.end));
+    Bounds turned = record.shape->bounds(sweep.start);
+    if (record.is_ball) return turned;
+    const Bounds end = record.shape->bounds(sweep.end);
+    turned.add(Bounds{end.lower - motion, end.upper - motion});
     const BodyState& state = world.rigid.motion[body];
-    if (length(Vec3{state.turn.x, state.turn.y, state.turn.z}) < 0.05) return swept;
+    if (length(Vec3{state.turn.x, state.turn.y, state.turn.z}) < 0.05) return turned;
     const Vec3 reach{record.reach, record.reach, record.reach};
-    swept.add(Bounds{state.start_center - reach, state.start_center + reach});
-    swept.add(Bounds{state.center - reach, state.center + reach});
-    return swept;
+    turned.add(Bounds{state.start_center - reach, state.start_center + reach});
+    return turned;
+}
+
+// The broad phase has the paths that were expected when the step began. Tells it of those that bodies took instead:
+// what hit something, or was hit.
+void follow_paths(const ContinuousAccess& world) {
+    std::vector<std::vector<LeavingBody>>& leaving = world.contacts.leaving;
+    leaving.resize(static_cast<std::size_t>(world.workers.workers()));
+    for (std::vector<LeavingBody>& of_worker : leaving) of_worker.clear();
+    parallel_for_awake(world, [&](int worker, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
+            const std::uint32_t body = world.activity.awake[i];
+            const BodyRecord& record = world.rigid.record(body);
+            if (!record.shape || !record.definition.enabled) continue;
+            const BodyState& state = world.rigid.motion[body];
+            const Vec3 motion = state.center - state.start_center;
+            const Bounds bounds = turned_bounds(world, body, sweep_of(world, body), motion);
+            if (world.contacts.broad_phase.holds(body, bounds, motion)) continue;
+            leaving[static_cast<std::size_t>(worker)].push_back({body, bounds, motion});
+        }
+    });
+    for (const std::vector<LeavingBody>& of_worker : leaving) {
+        for (const LeavingBody& l : of_worker) world.contacts.broad_phase.move(l.body, l.bounds, l.motion);
+    }
+    world.contacts.pairs = &world.contacts.broad_phase.update_pairs(world.workers);
 }
 
 std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
@@ -117,13 +174,14 @@ Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
     return velocity - acceleration * ((along < 0 ? along + root : along - root) / squared);
 }
 
-// Puts a body back to a fraction of its path. The spin stays constant in the body's axes: with a constant spin in the
-// world's axes, turning the inertia back would change the energy.
-void put_back(const ContinuousAccess& world, std::uint32_t body, double fraction) {
+// Puts a body back to where it met something, and lets it go along from there. The spin stays constant in the body's
+// axes: with a constant spin in the world's axes, turning the inertia back would change the energy.
+void put_back(const ContinuousAccess& world, const FastBody& fast) {
+    const auto& [body, fraction, along] = fast;
     if (fraction >= 1) return;
     BodyState& state = world.rigid.motion[body];
     const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
-    const Vec3 back = (state.start_center - state.center) * (1 - fraction);
+    const Vec3 back = (state.start_center - state.center) * (1 - fraction) + along;
     state.linear_velocity = velocity_before(state.linear_velocity, world.rigid.constants[body].acceleration, back);
     state.center += back;
     const Quat end = dot(state.rotation, state.start_rotation) < 0
@@ -134,20 +192,6 @@ void put_back(const ContinuousAccess& world, std::uint32_t body, double fraction
                                      begin.z + fraction * (end.z - begin.z), begin.w + fraction * (end.w - begin.w)});
     state.angular_velocity = rotate(state.rotation, spin);
     refresh_inertia(state, world.rigid.constants[body]);
-}
-
-// Calls visit(other, its place among the fast ones or their number) for each body that a body may meet on its path.
-template <class Visit>
-void for_each_met(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep,
-                  const std::vector<FastBody>& fast, Visit&& visit) {
-    world.contacts.broad_phase.query(swept_bounds(world, body, sweep), [&](std::uint32_t other) {
-        if (other == body || !may_meet(world, body, other)) return;
-        const auto found =
-            std::lower_bound(fast.begin(), fast.end(), other,
-                             [](const FastBody& each, std::uint32_t index) { return each.body < index; });
-        const bool is_fast = found != fast.end() && found->body == other;
-        visit(other, is_fast ? static_cast<std::size_t>(found - fast.begin()) : fast.size());
-    });
 }
 
 // Bodies that may tunnel, in the order of the bodies.
@@ -169,17 +213,42 @@ std::vector<FastBody> list_fast(const ContinuousAccess& world) {
     return fast;
 }
 
+// The fast bodies and what they may pass through, in the order of the pairs.
+std::vector<Passing> list_passings(const ContinuousAccess& world, const std::vector<FastBody>& fast) {
+    const std::size_t none = fast.size();
+    std::vector<std::size_t> place(world.rigid.motion.size(), none);
+    for (std::size_t i = 0; i < fast.size(); ++i) place[fast[i].body] = i;
+    std::vector<Passing> passings;
+    for (const BroadPhase::Pair& pair : *world.contacts.pairs) {
+        if (place[pair.a] == none && place[pair.b] == none) continue;
+        const bool a_is_fast = place[pair.a] != none;
+        const std::uint32_t body = a_is_fast ? pair.a : pair.b, other = a_is_fast ? pair.b : pair.a;
+        if (may_pass(world, body, other) && may_meet(world, body, other))
+            passings.push_back({place[body], other, place[other]});
+    }
+    return passings;
+}
+
+// For the rest of the step two that met go along with their common centre of mass, as if they stuck to each other: else
+// what meets in a heap that flies would fall behind the heap.
+Vec3 common_motion(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
+    const auto moved = [&](std::uint32_t body) {
+        return world.rigid.motion[body].center - world.rigid.motion[body].start_center;
+    };
+    const double mass_a = world.rigid.constants[a].mass, mass_b = world.rigid.constants[b].mass;
+    return (moved(a) * mass_a + moved(b) * mass_b) / (mass_a + mass_b);
+}
+
 // Fast bodies that meet each other stop where they meet, the earliest first; a stopped body is met no more.
-void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast) {
+void stop_at_meetings(const ContinuousAccess& world, const std::vector<Passing>& passings,
+                      std::vector<FastBody>& fast) {
     std::vector<Meeting> meetings;
-    for (std::size_t i = 0; i < fast.size(); ++i) {
-        const std::uint32_t body = fast[i].body;
-        const Sweep sweep = sweep_of(world, body);
-        for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
-            if (place <= i || place == fast.size() || !may_pass(world, body, other)) return;
-            const auto time = meeting_time(world, body, other, sweep, sweep_of(world, other));
-            if (time) meetings.push_back({*time, i, place});
-        });
+    for (const Passing& passing : passings) {
+        if (passing.second == fast.size()) continue;
+        const std::uint32_t body = fast[passing.first].body;
+        const auto time =
+            meeting_time(world, body, passing.other, sweep_of(world, body), sweep_of(world, passing.other));
+        if (time) meetings.push_back({*time, passing.first, passing.second});
     }
     std::stable_sort(meetings.begin(), meetings.end(),
                      [](const Meeting& m, const Meeting& n) { return m.time < n.time; });
@@ -187,22 +256,27 @@ void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast
         FastBody &first = fast[meeting.first], &second = fast[meeting.second];
         if (first.fraction < 1 || second.fraction < 1) continue;
         first.fraction = second.fraction = meeting.time;
+        first.along = second.along = common_motion(world, first.body, second.body) * (1 - meeting.time);
     }
-    for (const FastBody& each : fast) put_back(world, each.body, each.fraction);
+    for (const FastBody& each : fast) put_back(world, each);
 }
 
-// The fraction of the rest of its path after which a body first touches something that is not fast itself.
-double first_touch(const ContinuousAccess& world, std::uint32_t body, const std::vector<FastBody>& fast) {
-    const Sweep sweep = sweep_of(world, body);
-    double first = 1;
-    for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
+// On the rest of its path each stops where it first touches something that is not fast itself, and goes along with it.
+void stop_at_touches(const ContinuousAccess& world, const std::vector<Passing>& passings, std::vector<FastBody>& fast) {
+    for (FastBody& each : fast) each.fraction = 1;
+    for (const Passing& passing : passings) {
         // A body that rolls along a surface has followed the surface; a straight line between its ends would cut into
         // edges.
-        if (place < fast.size() || has_rolled_along(world, body, other)) return;
-        const Transform pose = world.rigid.pose(other);
-        if (const auto time = meeting_time(world, body, other, sweep, {pose, pose, {}})) first = std::min(first, *time);
-    });
-    return first;
+        FastBody& each = fast[passing.first];
+        if (passing.second != fast.size() || has_rolled_along(world, each.body, passing.other)) continue;
+        const auto time =
+            meeting_time(world, each.body, passing.other, sweep_of(world, each.body), sweep_of(world, passing.other));
+        if (!time || *time >= each.fraction) continue;
+        each.fraction = *time;
+        const Vec3 start = world.rigid.motion[each.body].start_center;
+        each.along = carried(world, passing.other, start) * (1 - *time);
+    }
+    for (const FastBody& each : fast) put_back(world, each);
 }
 
 }  // namespace
@@ -210,8 +284,10 @@ double first_touch(const ContinuousAccess& world, std::uint32_t body, const std:
 void stop_tunnelling(const ContinuousAccess& world) {
     std::vector<FastBody> fast = list_fast(world);
     if (fast.empty()) return;
-    stop_at_meetings(world, fast);
-    for (const FastBody& each : fast) put_back(world, each.body, first_touch(world, each.body, fast));
+    follow_paths(world);
+    const std::vector<Passing> passings = list_passings(world, fast);
+    stop_at_meetings(world, passings, fast);
+    stop_at_touches(world, passings, fast);
 }
 
 }  // namespace embody::physics::stages

@@ -58,17 +58,13 @@ void list_leaving(const PairsAccess& world, IndexRange range, std::vector<Leavin
         const Vec3 motion =
             world.rigid.motion[body].linear_velocity * dt + world.rigid.constants[body].acceleration * (dt * dt / 2);
 
-        // Bounds include the whole path: bodies on it must be pairs before the body gets there.
+        // What the body may meet on its path must be a pair before it gets there.
         const Bounds now = record.shape->bounds(world.rigid.pose(body));
         const double angle = record.is_ball ? 0 : length(world.rigid.motion[body].angular_velocity) * dt;
-        const auto swept = [&motion](Bounds bounds) {
-            bounds.add(Bounds{bounds.lower + motion, bounds.upper + motion});
-            return bounds;
-        };
-        Bounds wanted = swept(angle > 0 ? turned_bounds(world, body, now, angle) : now);
+        Bounds wanted = angle > 0 ? turned_bounds(world, body, now, angle) : now;
         if (world.contacts.broad_phase.holds(body, wanted, motion)) continue;
         if (angle > 0 && angle < 1) {
-            wanted = swept(close_turned_bounds(world, body, now, angle));
+            wanted = close_turned_bounds(world, body, now, angle);
             if (world.contacts.broad_phase.holds(body, wanted, motion)) continue;
         }
         leaving.push_back({body, wanted, motion});
