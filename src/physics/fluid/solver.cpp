@@ -187,12 +187,11 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome);
     apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity,
                         properties_.density * properties_.particle_volume, dt, workers);
-    for (MovingObstacle& moving : obstacles_.moving()) {
-        bind_liquid(grid_, properties_.density, gravity, moving);
+    for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
+    project(dt, outcome, workers);
+    for (MovingObstacle& moving : obstacles_.moving())
         drag_small_body(grid_, properties_.density, properties_.viscosity,
                         properties_.density * properties_.particle_volume, dt, moving);
-    }
-    project(dt, outcome, workers);
     // Next to the liquid the air's faces move with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
