@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Bodies smaller than a cell: the speed at which drag and buoyancy hold their weight.
+#include <cmath>
+
+#include "foundation/random.h"
 #include "validation/fluid_scenes.h"
 
 namespace embody::physics {
@@ -79,6 +82,40 @@ TEST(FluidSmallBody, DragKeepsMomentum) {
     for (int i = 0; i < 6; ++i) world->step();
     EXPECT_LT(world->linear_velocity(ball).x, 1.8);
     EXPECT_NEAR(world->conserved().linear_momentum.x, before, 0.05 * before);
+}
+
+// Creeping motion, G. G. Stokes (1851): the weight against 6 π μ r v, at any step. The liquid has no weight here: what
+// gravity does to thick liquids beside walls is another matter.
+TEST(FluidSmallBody, BallsSinkAsStokesSaysInLiquidsOfAnyViscosity) {
+    Random random(22);
+    for (int trial = 0; trial < 8; ++trial) {
+        SCOPED_TRACE(trial);
+        const double radius = random.between(0.002, 0.01), density = random.between(1500, 8000);
+        const double weight = 4.0 / 3 * pi * radius * radius * radius * density * gravity;
+        // So thick that the Reynolds number stays below 0.1.
+        const double least = std::sqrt(weight * 998 / (3 * pi * 0.1));
+        const double viscosity = std::max(least, std::exp(random.between(std::log(0.3), std::log(100.0))));
+        const double expected = weight / (6 * pi * viscosity * radius), rate = trial % 2 == 0 ? 60 : 240;
+        constexpr double side = 0.48, depth = 0.6;
+        auto world = make_world({.time_step = 1 / rate});
+        add_tank(*world, {{0, 0, 0}, {side, 0.9, side}});
+        ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {side, depth, side}}},
+                                         .viscosity = viscosity,
+                                         .cell_size = 0.04,
+                                         .gravity_factor = 0,
+                                         .allow_sleep = false}));
+        const BodyHandle body = world
+                                    ->create_body({.shape = world->create_shape(SphereShape{radius}).value(),
+                                                   .position = {side / 2, 0.35, side / 2},
+                                                   .mass = {.density = density}})
+                                    .value();
+        run(*world, 0.5);
+        const double start = world->center_of_mass(body).y;
+        run(*world, 0.5);
+        const double ratio = (start - world->center_of_mass(body).y) / 0.5 / expected;
+        RecordProperty("ratio_" + std::to_string(trial), std::to_string(ratio));
+        EXPECT_NEAR(ratio, 1, 0.1) << radius << " m, " << viscosity << " Pa s, " << rate << " Hz";
+    }
 }
 
 }  // namespace

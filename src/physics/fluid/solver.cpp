@@ -95,9 +95,11 @@ void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers)
     obstacles_.measure(0, grid_, workers);
 }
 
-FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers) {
+FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers,
+                                  std::span<ImmersedPoint> points) {
     FluidOutcome outcome;
     for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
+    immersed_.begin(points, origin_);
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);
     const int max_parts = settings_.parts.max_parts;
@@ -117,9 +119,11 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     for (const FluidObstacle& obstacle : obstacles) {
         outcome.is_finite = outcome.is_finite && is_finite(obstacle.impulse) && is_finite(obstacle.angular_impulse);
     }
+    for (const ImmersedPoint& point : points) outcome.is_finite = outcome.is_finite && is_finite(point.impulse);
     outcome.is_finite = outcome.is_finite && reach_of(particles_, workers).is_finite();
     if (outcome.is_finite) return outcome;
     for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
+    for (ImmersedPoint& point : points) point.impulse = {};
     return outcome;
 }
 
@@ -160,16 +164,19 @@ float FluidSolver::particle_fraction() const {
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
     outcome.lost += grid_.cover(particles_, settings_.cells, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(dt, grid_.cell_size()), settings_.cells, workers);
+    std::vector<Bounds> near = obstacles_.in_reach(dt, grid_.cell_size());
+    immersed_.add_reach(dt, grid_.cell_size(), near);
+    grid_.sort(particles_, particle_fraction(), near, settings_.cells, workers);
     obstacles_.measure(dt, grid_, workers);
+    immersed_.measure(dt, grid_);
     obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
     if (has_liquid) advance_grid(dt, gravity, outcome, workers);
     move_particles(dt, workers);
     fly(dt, gravity * dt, workers);
-    if (has_liquid)
-        components_.end(gravity * dt, obstacles_, properties_.density * properties_.particle_volume, particles_);
+    if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, particle_mass(), particles_);
     obstacles_.advance(dt);
+    immersed_.advance(dt);
 }
 
 void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
@@ -177,22 +184,21 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     const double h = grid_.cell_size();
     find_places(dt, workers);
     particles_to_grid(grid_, particles_, places_, particle_fraction(), workers);
+    immersed_.find_conductance(dt, {properties_.density, properties_.viscosity}, particle_mass(), grid_);
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, settings_, workers);
-    components_.begin(grid_, system_, obstacles_, particles_, {is_tense_, settings_.components});
+    components_.begin(grid_, system_, obstacles_, immersed_, particles_, {is_tense_, settings_.components});
     obstacles_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome);
-    apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity,
-                        properties_.density * properties_.particle_volume, dt, workers);
-    for (MovingObstacle& moving : obstacles_.moving()) {
-        bind_liquid(grid_, properties_.density, gravity, moving);
-        drag_small_body(grid_, properties_.density, properties_.viscosity,
-                        properties_.density * properties_.particle_volume, dt, moving);
-    }
+    apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity, particle_mass(), dt, workers);
+    for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
+    immersed_.predict(dt, grid_);
     project(dt, outcome, workers);
+    for (MovingObstacle& moving : obstacles_.moving())
+        drag_small_body(grid_, properties_.density, properties_.viscosity, particle_mass(), dt, moving);
     // Next to the liquid the air's faces move with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
@@ -234,6 +240,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size(), rho = properties_.density;
     outflow(grid_, obstacles_, system_, flow_, workers);
+    immersed_.add_outflow(grid_, flow_);
     impulse_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) {
         flow_[row] *= -rho / h;
@@ -248,6 +255,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
 
     subtract_gradient(grid_, {system_, impulse_, surface_, 1 / (rho * h)}, grid_.velocity, workers);
+    immersed_.apply_pressure(system_, impulse_, grid_);
     push_obstacles(impulse_);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {

@@ -9,6 +9,7 @@
 #include "physics/definitions/step_report.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/obstacles/immersed_points.h"
 #include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/free_components.h"
 #include "physics/fluid/pressure/pressure_system.h"
@@ -47,8 +48,9 @@ public:
     void set_settings(const FluidSettings& settings) { settings_ = settings; }
     /// Prepares the grid and the static obstacles on it for the first step.
     void prepare(std::span<FluidObstacle> obstacles, TaskPool& workers);
-    /// Advances by dt; the obstacles' impulses are set.
-    FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers);
+    /// Advances by dt; the impulses of obstacles and immersed points are set.
+    FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers,
+                         std::span<ImmersedPoint> points = {});
 
     /// After a step: moves the obstacles to their places after contacts and keeps the particles out of them there.
     struct Followed {
@@ -93,6 +95,7 @@ private:
     void advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void fly(double dt, Vec3 change, TaskPool& workers);
     [[nodiscard]] float particle_fraction() const;  // of a cell's volume
+    [[nodiscard]] double particle_mass() const { return properties_.density * properties_.particle_volume; }
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
@@ -107,6 +110,7 @@ private:
     FluidProperties properties_;
     FluidGrid grid_;
     FluidObstacles obstacles_;
+    ImmersedPoints immersed_;
     PressureSystem system_;
     ViscositySystem viscosity_;
     SurfacePressure surface_;

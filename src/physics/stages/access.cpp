@@ -19,7 +19,7 @@ WakeAccess::WakeAccess(WorldState& world)
 ObstacleAccess::ObstacleAccess(WorldState& world)
     : settings(world.settings), rigid(world.rigid), contacts(world.contacts), workers(*world.workers) {}
 
-FluidAccess::FluidAccess(WorldState& world) : WakeAccess(world), fluids(world.fluids) {}
+FluidAccess::FluidAccess(WorldState& world) : WakeAccess(world), fluids(world.fluids), immersed(world.deformables) {}
 
 PairsAccess::PairsAccess(WorldState& world)
     : settings(world.settings),

@@ -72,6 +72,7 @@ struct ObstacleAccess {
 struct FluidAccess : WakeAccess {
     explicit FluidAccess(WorldState& world);
     FluidState& fluids;
+    DeformableState& immersed;  ///< the deformables: forces on their nodes and their sleep
 };
 
 /// The broad phase.

@@ -108,6 +108,17 @@ void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<con
         all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
 }
 
+void DeformableRecord::set_liquid_force(std::span<const Vec3> force) {
+    if (SolidDeformable* own = solid()) return own->set_liquid_force(force);
+    thin_nodes(*this).force.assign(force.begin(), force.end());
+}
+
+void DeformableRecord::set_flow(std::vector<NodeFlow> flow) {
+    Nodes& all = thin_nodes(*this);
+    all.flow_impulse.assign(flow.size(), {});
+    all.flow = std::move(flow);
+}
+
 void DeformableRecord::rest() {
     if (SolidDeformable* own = solid()) return own->rest();
     Nodes& all = thin_nodes(*this);

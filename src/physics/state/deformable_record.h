@@ -21,6 +21,19 @@ struct SurfacePush {
     Vec3 force;                               ///< on the solid, N
 };
 
+/// What the step of the liquids before expects of a deformable's elastic forces and contacts
+/// (docs/physics/coupling.md).
+struct LiquidMemory {
+    std::uint64_t step = 0;                   ///< last step in which a liquid touched it
+    std::vector<Vec3> velocity;               ///< of the nodes when that step began, m/s
+    std::vector<Vec3> force;                  ///< of the liquids on the nodes in the step before, N
+    std::vector<Vec3> bound, bound_momentum;  ///< as of SeenDeformable, of all fluids in this step
+    std::vector<Vec3> reaction;               ///< impulses that the nodes still owe to the liquids, N s
+    std::vector<Vec3> acceleration;           ///< that is expected of the nodes without the liquids, m/s²
+    std::vector<Vec3> force_asleep;           ///< of the liquids on the nodes in the last step before it fell asleep, N
+    bool wakes = false;                       ///< a liquid that it lies asleep in is not quiet any more
+};
+
 /// A deformable with the data for its contacts and its sleep.
 struct DeformableRecord {
     DeformableDefinition definition;
@@ -40,8 +53,9 @@ struct DeformableRecord {
     std::vector<SurfacePush> surface_pushes;  ///< a sheet's or rope's, of its last substep
     std::vector<Vec3> tie_pulls;              ///< by tie: of the last substep, on its node, N
     std::uint32_t slot = 0;                   ///< its own slot, while it moves
-    double quiet_time = 0;                    ///< s
-    std::vector<Vec3> quiet_places;           ///< places of a sheet's or rope's nodes when the quiet time began
+    LiquidMemory liquid;
+    double quiet_time = 0;           ///< s
+    std::vector<Vec3> quiet_places;  ///< places of a sheet's or rope's nodes when the quiet time began
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite positions, to freeze it at
 
@@ -63,6 +77,10 @@ struct DeformableRecord {
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no
     /// velocity.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Sets the forces of liquids on the nodes, N; empty: none.
+    void set_liquid_force(std::span<const Vec3> force);
+    /// Sets the flow around a sheet's or rope's nodes; empty: none.
+    void set_flow(std::vector<NodeFlow> flow);
     /// Sets all velocities to zero.
     void rest();
     /// Puts its nodes at these positions, at rest.

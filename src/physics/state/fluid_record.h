@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/handles.h"
 #include "physics/fluid/solver.h"
 #include "physics/state/namespace.h"
 
@@ -19,6 +20,14 @@ struct SeenBody {
     Vec3 force, torque;  ///< of the fluid on it in that step, N, N m
 };
 
+/// A deformable that a fluid met in its last step.
+struct SeenDeformable {
+    DeformableHandle deformable;
+    std::vector<Vec3> force;  ///< of the fluid on its nodes in that step, N
+    /// Liquid that is bound to the nodes, by axis, kg, and its momentum at the end of that step, kg m/s.
+    std::vector<Vec3> bound, bound_momentum;
+};
+
 /// A fluid with what drawing it and its sleep need.
 struct FluidRecord {
     FluidDefinition definition;
@@ -28,6 +37,7 @@ struct FluidRecord {
     std::vector<Vec3f> positions, velocities;
     std::vector<std::uint32_t> ids;
     std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies within its reach in the last step
+    std::vector<SeenDeformable> immersed;    ///< by slot: deformables within its reach in the last step
     double quiet_time = 0;                   ///< s
     double quiet_height = 0;                 ///< mean height when the quiet time began, m
     bool is_asleep = false, is_frozen = false;

@@ -175,7 +175,7 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
     PressureSystem system;
     system.build(block.grid, {}, block.workers);
     FreeComponents components;
-    components.begin(block.grid, system, block.obstacles, block.particles, {.all = true});
+    components.begin(block.grid, system, block.obstacles, {}, block.particles, {.all = true});
     const auto momenta = [&](bool is_first) {
         Vec3 place, linear, angular;
         double count = 0;
@@ -198,7 +198,7 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
         for (int a = 0; a < 3; ++a) p.velocity[a] += static_cast<float>(push[a]);
     }
     const Vec3 gravity{0, -0.1, 0};
-    components.end(gravity, block.obstacles, 1, block.particles);
+    components.end(gravity, block.obstacles, {}, 1, block.particles);
     const auto first_after = momenta(true), second_after = momenta(false);
     const double count = static_cast<double>(block.particles.size()) / 2;
     EXPECT_LT(length(first_after.first - first.first - gravity * count), 1e-3 * count);
@@ -212,9 +212,9 @@ TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
     PressureSystem system;
     system.build(floor.block.grid, {}, floor.block.workers);
     FreeComponents components;
-    components.begin(floor.block.grid, system, floor.block.obstacles, floor.block.particles, {.all = true});
+    components.begin(floor.block.grid, system, floor.block.obstacles, {}, floor.block.particles, {.all = true});
     for (FluidParticle& p : floor.block.particles) p.velocity[0] = 3;
-    components.end({}, floor.block.obstacles, 1, floor.block.particles);
+    components.end({}, floor.block.obstacles, {}, 1, floor.block.particles);
     for (const FluidParticle& p : floor.block.particles) EXPECT_EQ(p.velocity[0], 3);
 }
 

@@ -176,6 +176,11 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
     Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
     Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
 
+    if (!nodes_.flow.empty()) {
+        own += Mat3::diagonal(nodes_.flow[i].drag / h);
+        load += nodes_.flow[i].force({}, substep.time + h);
+    }
+
     const std::size_t first = matrix_.near_first(i);
     near.resize(matrix_.near_first(i + 1) - first);
     for (std::size_t k = 0; k < near.size(); ++k) {
@@ -226,7 +231,7 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
     node_stiffness_.resize(count);
     const double least = std::max(length(substep.gravity), substep.settings.thin_contact.min_gravity);  // m/s²
     for (std::size_t i = 0; i < count; ++i) {
-        weight_[i] = nodes_.mass[i] * substep.gravity;
+        weight_[i] = nodes_.mass[i] * substep.gravity + nodes_.force_on(i);
         small_load_[i] = {0, nodes_.mass[i] * least, 0};
     }
     parallel_for(workers, count, count >= 1000, [&](int, IndexRange range) {
@@ -271,12 +276,13 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     return true;
 }
 
-// Only while no external forces but weight, air and `given` act.
-void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given) {
+// Only while no external forces but weight, air, liquids and `given` act. `by_flow`: impulses, N s.
+void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow) {
     const double h = substep.h;
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
     for (std::size_t i = 0; i < given.size(); ++i) all[i] += h * given[i];
+    for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
             all[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
@@ -378,8 +384,10 @@ void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::s
     if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves_, substep);
+    for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
-        keep_momentum(substep, given);
+        keep_momentum(substep, given, by_flow);
     std::vector<Vec3> within(nodes_.size());  // forces that the moves include already
     layer_springs_.finish(moves_, within, layer_contacts_);
     springs_.finish(moves_, body_moves, substep, bodies);

@@ -95,7 +95,7 @@ private:
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
-    void keep_momentum(const Substep& substep, std::span<const Vec3> given);
+    void keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow);
     void find_layers(const Substep& substep, TaskPool& workers);
     void part_layers(const ClothSettings& settings, TaskPool& workers);
     // Distance of layers: as if a body of no thickness lay between them.

@@ -40,6 +40,20 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, con
     }
 }
 
+std::vector<Vec3> impulses_of_flow(const Nodes& nodes, std::span<const Vec3> moves, const Substep& substep) {
+    std::vector<Vec3> impulses(nodes.flow.size());
+    for (std::size_t i = 0; i < impulses.size(); ++i) {
+        if (nodes.inverse_mass[i] > 0)
+            impulses[i] = substep.h * nodes.flow[i].force(moves[i] / substep.h, substep.time + substep.h);
+    }
+    return impulses;
+}
+
+double flow_energy(const NodeFlow& flow, Vec3 move, const Substep& substep) {
+    const Vec3 beyond = move - substep.h * flow.expected_velocity(substep.time + substep.h);
+    return dot(scale(flow.drag, beyond), beyond) / (2 * substep.h);
+}
+
 WholeMotion motion_of_whole(const Nodes& nodes) {
     double mass = 0;
     Vec3 center, momentum, turning;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "physics/definitions/settings/thin_contact_settings.h"
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/contact/substep.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -14,6 +16,13 @@ namespace embody::physics::deformable {
 /// Elastic forces change neither; a solve that ended early does, and backward Euler slows turning.
 void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
                   std::span<Vec3> moves);
+
+/// Impulses of the flow around the nodes in a substep in which they move by `moves` (m), N s; none without a flow. Held
+/// nodes have none.
+[[nodiscard]] std::vector<Vec3> impulses_of_flow(const Nodes& nodes, std::span<const Vec3> moves,
+                                                 const Substep& substep);
+/// Its energy in the function that a substep minimises: the derivative by the move is minus its force, J.
+[[nodiscard]] double flow_energy(const NodeFlow& flow, Vec3 move, const Substep& substep);
 
 /// Motion of all nodes, weighted by mass.
 struct WholeMotion {

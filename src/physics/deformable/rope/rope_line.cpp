@@ -148,7 +148,8 @@ double RopeLine::energy(const Substep& substep, std::span<const Vec3> moves) con
         at[i] = nodes_.position[i] + moves[i];
         if (fixed_[i]) continue;
         const Vec3 away = moves[i] - h * nodes_.mean_velocity[i] - h * h * substep.gravity;
-        sum += nodes_.mass[i] / (2 * h * h) * length_squared(away);
+        sum += nodes_.mass[i] / (2 * h * h) * length_squared(away) - dot(nodes_.force_on(i), moves[i]);
+        if (!nodes_.flow.empty()) sum += flow_energy(nodes_.flow[i], moves[i], substep);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) {
         if (segments_[s].is_broken) continue;
@@ -217,7 +218,11 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
     for (std::size_t i = 0; i < count; ++i) {
         places_[i] = nodes_.position[i] + moves_[i];
         system_.band.add_diagonal(i, nodes_.mass[i] / (h * h));
-        system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
+        system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity) + nodes_.force_on(i);
+        if (nodes_.flow.empty()) continue;
+        const NodeFlow& flow = nodes_.flow[i];
+        system_.band.add(i, i, Mat3::diagonal(flow.drag / h));
+        system_.rhs[i] += flow.force({}, substep.time + h);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
     for (std::size_t i = 1; i + 1 < count; ++i) add_curvature(i);
@@ -372,10 +377,14 @@ void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::spa
     const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
     const bool is_free = std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
                          std::ranges::none_of(springs_.springs(), acts);
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves_, substep);
+    for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     if (is_whole && is_free) {
         std::vector<Vec3> all(count);
-        for (std::size_t i = 0; i < count; ++i) all[i] = substep.h * nodes_.mass[i] * substep.gravity;
+        for (std::size_t i = 0; i < count; ++i)
+            all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
         for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
+        for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
         keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves_);
     }
     held_.clear();

@@ -108,7 +108,7 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         start_[i] = nodes_.position[i];
         nodes_.position[i] += h * nodes_.mean_velocity[i];
-        pushes_[i] = {};
+        pushes_[i] = nodes_.force_on(i);
         unsettled_[i] = {};
     }
     kinetic_energy_at_start_ = kinetic_energy();  // the nodes have moved by their velocities
@@ -229,7 +229,11 @@ bool SolidDeformable::gains_energy() {
 }
 
 bool SolidDeformable::is_let_alone() const {
-    return is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; });
+    if (!is_free_) return false;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (pushes_[i] != nodes_.force_on(i)) return false;
+    }
+    return true;
 }
 
 void SolidDeformable::go_on_with(std::span<const Vec3> force, TaskPool& workers) {

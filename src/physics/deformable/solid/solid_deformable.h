@@ -22,6 +22,8 @@ public:
     explicit SolidDeformable(const DeformableDefinition& definition);
 
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    /// Sets the forces of liquids on the nodes, N; empty: none.
+    void set_liquid_force(std::span<const Vec3> force) { nodes_.force.assign(force.begin(), force.end()); }
     /// Outer faces, counter-clockwise from outside; and their nodes, ascending: what collides.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& surface() const { return surface_; }
     [[nodiscard]] const std::vector<std::uint32_t>& surface_nodes() const { return surface_nodes_; }

@@ -90,6 +90,39 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
     }
 }
 
+// What bends may fill many cells: the surface goes on through them, layer by layer from around, each as the mean of its
+// neighbours.
+void extend_into_immersed(FluidGrid& grid, float min_room) {
+    constexpr float unknown = 2;  // no surface: these are within ±1
+    std::vector<int> left;
+    for (const int cell : grid.immersed_cells) {
+        if (grid.room[cell] < min_room && grid.obstacle[cell] > 0) left.push_back(cell);
+    }
+    for (const int cell : left) grid.surface[cell] = unknown;
+    std::vector<MarkedCell> layer;
+    do {
+        layer.clear();
+        for (const int cell : left) {
+            float sum = 0;
+            int count = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int stride = grid.stride(axis);
+                for (const int side : {-1, 1}) {
+                    const int other = cell + side * stride;
+                    const bool is_open = grid.open[axis][side < 0 ? cell : other] > 0;
+                    if (!is_open || grid.surface[other] == unknown) continue;
+                    sum += grid.surface[other];
+                    ++count;
+                }
+            }
+            if (count > 0) layer.push_back({cell, sum / static_cast<float>(count)});
+        }
+        mark(grid, layer);
+        std::erase_if(left, [&](int cell) { return grid.surface[cell] != unknown; });
+    } while (!layer.empty());
+    for (const int cell : left) grid.surface[cell] = 1;
+}
+
 // Rows in the order of the tiles and of the cells in them.
 void number_rows(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
     const auto tiles = grid.tiles();
@@ -136,6 +169,7 @@ void mark_liquid(FluidGrid& grid, const FluidCellSettings& settings, LiquidCells
     });
 
     mark_beside_liquid(grid, settings, workers);
+    if (!grid.immersed_cells.empty()) extend_into_immersed(grid, min_room);
     number_rows(grid, liquid, workers);
 }
 

@@ -60,6 +60,7 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
             for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
+    ImmersedPoints::leave(grid_);
     system_.build(grid_, settings_, workers);
     obstacles_.list_areas(grid_);
     outflow(grid_, obstacles_, system_, flow_, workers);

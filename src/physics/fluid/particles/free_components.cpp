@@ -122,7 +122,8 @@ void FreeComponents::find(const FluidGrid& grid, const PressureSystem& system, c
 }
 
 void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
-                           const std::vector<FluidParticle>& particles, const Options& options) {
+                           const ImmersedPoints& immersed, const std::vector<FluidParticle>& particles,
+                           const Options& options) {
     settings_ = options.settings;
     components_.clear();
     component_of_particle_.clear();
@@ -137,10 +138,12 @@ void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, 
         component_of_particle_[i] = component;
         its.add(to_vec(particles[i].position), to_vec(particles[i].velocity));
     }
+    component_of_point_ = immersed.rows(grid);
+    for (std::int32_t& row : component_of_point_) row = row < 0 ? -1 : component_of_row_[static_cast<std::size_t>(row)];
 }
 
-void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
-                         std::vector<FluidParticle>& particles) const {
+void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed,
+                         double particle_mass, std::vector<FluidParticle>& particles) const {
     if (components_.empty()) return;
     const double min_turned = settings_.min_turned_particles;
     struct Correction {
@@ -167,6 +170,14 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, double pa
         const Vec3 turned = (moving.obstacle->angular_impulse - bodies_[i].angular_impulse) / particle_mass;
         correction.linear -= given;
         correction.angular -= turned + cross(moving.center - correction.center, given);
+    }
+    for (std::uint32_t point = 0; point < component_of_point_.size(); ++point) {
+        const std::int32_t component = component_of_point_[point];
+        if (component < 0 || now[static_cast<std::size_t>(component)].count == 0) continue;
+        Correction& correction = corrections[static_cast<std::size_t>(component)];
+        const Vec3 given = immersed.given(point) / particle_mass;
+        correction.linear -= given;
+        correction.angular -= cross(immersed.places()[point] - correction.center, given);
     }
     for (std::size_t component = 0; component < components_.size(); ++component) {
         const Component& after = now[component];

@@ -9,6 +9,7 @@
 #include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/obstacles/immersed_points.h"
 #include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/pressure/pressure_system.h"
 
@@ -26,10 +27,11 @@ public:
     /// Finds the components and the momenta of their particles and of the bodies. Rows are known, and the bodies have
     /// not been changed in this part of the step.
     void begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
-               const std::vector<FluidParticle>& particles, const Options& options);
-    /// For the same particles after they moved: restores the momentum of each component, less what its bodies were
-    /// given, and likewise the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
-    void end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
+               const ImmersedPoints& immersed, const std::vector<FluidParticle>& particles, const Options& options);
+    /// For the same particles after they moved: restores the momentum of each component, less what its bodies and the
+    /// points in it were given, and likewise the angular momentum about its centre. `change`: of all velocities by
+    /// gravity, m/s.
+    void end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed, double particle_mass,
              std::vector<FluidParticle>& particles) const;
 
 private:
@@ -58,7 +60,8 @@ private:
     std::vector<std::int32_t> component_of_row_, component_of_particle_;  // −1: a drop of its own
     std::vector<std::int32_t> joined_;  // by component: an earlier one that it is part of, or itself
     std::vector<Component> components_;
-    std::vector<Touched> bodies_;  // as obstacles.moving()
+    std::vector<Touched> bodies_;                   // as obstacles.moving()
+    std::vector<std::int32_t> component_of_point_;  // of immersed ones; −1: none
 };
 
 }  // namespace embody::physics::fluid

@@ -43,19 +43,21 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
     double sum = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int stride = grid.stride(static_cast<int>(axis));
+        const bool has_immersed = !grid.liquid_conductance[axis].empty();
+        const auto& conductance = has_immersed ? grid.liquid_conductance[axis] : grid.open[axis];
         for (const bool up : {false, true}) {
-            const int other = up ? cell + stride : cell - stride;
-            const float open = grid.open[axis][up ? other : cell];
+            const int other = up ? cell + stride : cell - stride, face = up ? other : cell;
+            const float liquid = conductance[face], solid = has_immersed ? grid.solid_conductance[axis][face] : 0;
             std::int32_t& neighbour = (up ? own.upper : own.lower)[axis];
             neighbour = none;
-            if (open <= 0) continue;
+            if (liquid <= 0) continue;
             if (grid.row[other] < 0) {
-                sum += static_cast<double>(open) / gap_fraction(grid.surface[cell], grid.surface[other]);
+                sum += static_cast<double>(liquid) / gap_fraction(grid.surface[cell], grid.surface[other]) + solid;
                 continue;
             }
             neighbour = grid.row[other];
-            (up ? own.to_upper : own.to_lower)[axis] = open;
-            sum += open;
+            (up ? own.to_upper : own.to_lower)[axis] = liquid + solid;
+            sum += liquid + solid;
         }
     }
     // A small compressibility: liquid without any surface then has a definite pressure, too.

@@ -9,6 +9,7 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
 #include "physics/stages/fluid/fluids.h"
+#include "physics/stages/fluid/immersed_deformables.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
@@ -229,6 +230,7 @@ void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
         for (const auto& [slot, seen] : fluid.seen) {
             if (seen.force != Vec3{}) world.activity.sleep[slot].quiet_time = 0;
         }
+        keep_immersed_awake(world, fluid);
     }
     if (fluid.quiet_time < time_to_sleep || !world.settings.sleeping || !fluid.definition.allow_sleep) return;
     for (const auto& [slot, seen] : fluid.seen) {
@@ -236,6 +238,7 @@ void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
         if (world.rigid.is_dynamic(slot) && !world.activity.is_asleep(slot)) return;
         if (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{}) return;
     }
+    if (!are_immersed_asleep(world, fluid)) return;
     fluid.is_asleep = true;
     fluid.solver->stop();
     read_particles(fluid, world.workers);
@@ -254,16 +257,23 @@ std::vector<FluidObstacle> obstacles_near(const FluidAccess& world, const FluidR
 
 void advance_fluid(const FluidAccess& world, FluidRecord& fluid) {
     const std::vector<std::uint32_t> slots = bodies_near(world, fluid);
-    if (fluid.is_asleep && !is_disturbed(world, fluid, slots)) return;
+    const std::vector<std::uint32_t> bending = deformables_near(world, fluid);
+    const auto is_touched = [&] {
+        return is_disturbed(world, fluid, slots) || have_deformables_changed(world, fluid, bending);
+    };
+    if (fluid.is_asleep && !is_touched()) return;
     if (fluid.is_asleep) fluid.quiet_time = 0;
     fluid.is_asleep = false;
     const TaskPool::StayAwake stay_awake(world.workers);
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
     fluid.solver->set_settings(world.settings.solver.fluid);
-    const FluidOutcome outcome = fluid.solver->advance(
-        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, obstacles, world.workers);
+    ImmersedDeformables immersed = immerse(world, fluid, bending);
+    const FluidOutcome outcome =
+        fluid.solver->advance(world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor,
+                              obstacles, world.workers, immersed.points);
     note_outcome(world, fluid, outcome);
     push_bodies(world, fluid, obstacles);
+    note_forces(world, fluid, immersed);
     if (fluid.is_frozen) read_particles(fluid, world.workers);
     fall_asleep_if_quiet(world, fluid);
 }
@@ -299,6 +309,7 @@ void advance_fluids(const FluidAccess& world) {
     }
     const bool had_pushed = !world.fluids.pushed_bodies.empty();
     world.fluids.pushed_bodies.clear();
+    begin_immersed(world);
     if (world.fluids.records.count() == 0 && !had_pushed) return;
     world.fluids.touches.resize(world.rigid.bodies.slot_count());
     for (std::uint32_t slot = 0; slot < world.fluids.records.slot_count(); ++slot) {
@@ -306,7 +317,9 @@ void advance_fluids(const FluidAccess& world) {
         gather_awake(world);
         advance_fluid(world, world.fluids.records.at(slot));
         add_forces(world, world.fluids.records.at(slot));
+        push_immersed(world, world.fluids.records.at(slot));
     }
+    end_immersed(world);
     wake_pushed(world);
     gather_awake(world);
     note_touches(world);
