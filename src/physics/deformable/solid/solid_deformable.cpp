@@ -292,16 +292,19 @@ bool SolidDeformable::is_too_much(std::optional<double> surplus) const {
 }
 
 // Removes the excess that further iterations leave: the move of the substep beyond that of the whole is made shorter,
-// down to zero, which keeps the elastic energy. Returns whether it was.
+// down to zero, which keeps the elastic energy; where the turn of the whole is more than a substep can follow, so that
+// even this has too much, it turns less. Returns whether it was.
 bool SolidDeformable::keep_energy() {
     if (!is_measured_ && is_let_alone()) keep_momenta();
     std::optional<double> left = is_measured_ ? found_surplus_ : find_surplus();
     const bool is_shortened = is_too_much(left);
     if (is_shortened) {
-        const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
+        RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
         const int max_halvings = settings_.max_halvings;
-        for (int k = 1; k <= max_halvings && is_too_much(left); ++k) {
+        for (int k = 1; k <= max_halvings + 1 && is_too_much(left); ++k) {
             const double fraction = k < max_halvings ? 0.5 : 0;
+            if (k > max_halvings)
+                take_turning_energy(whole, *left - std::max(settings_.max_energy_gain * *energy_at_start_, surplus_));
             for (std::size_t i = 0; i < nodes_.size(); ++i) {
                 if (!(nodes_.inverse_mass[i] > 0)) continue;
                 const Vec3 along = whole.at(start_[i]);
@@ -338,6 +341,16 @@ SolidDeformable::RigidMove SolidDeformable::move_of_whole() const {
     const double sine = length(sideways);
     if (sine > 0) move.rotation = from_axis_angle(sideways / sine, std::asin(std::min(sine, 1.0)));
     return move;
+}
+
+// A chord is 2 r sin(φ/2), so the energy of the turn is proportional to the square of the half angle's sine.
+void SolidDeformable::take_turning_energy(RigidMove& move, double excess) const {
+    double energy = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        energy += nodes_.mass[i] / 2 * length_squared((move.at(start_[i]) - start_[i] - move.shift) / h_);
+    const double left = energy > 0 ? std::sqrt(std::max(0.0, 1 - excess / energy)) : 0;
+    const Vec3 half_sine = left * Vec3{move.rotation.x, move.rotation.y, move.rotation.z};
+    move.rotation = {half_sine.x, half_sine.y, half_sine.z, std::sqrt(1 - length_squared(half_sine))};
 }
 
 // Inner forces neither move nor turn the whole, and outer ones turn it with the arms of the nodes' new places. Rounding

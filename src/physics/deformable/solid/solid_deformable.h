@@ -99,6 +99,8 @@ private:
         [[nodiscard]] Vec3 at(Vec3 p) const { return center + shift + rotate(rotation, p - center); }
     };
     [[nodiscard]] RigidMove move_of_whole() const;
+    /// Lets it turn by less, so that its energy in this substep is less by `excess` (J), down to none of the turn.
+    void take_turning_energy(RigidMove& move, double excess) const;
     void keep_momenta();
     bool keep_energy();
     [[nodiscard]] std::optional<double> find_surplus();
