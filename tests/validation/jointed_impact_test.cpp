@@ -14,7 +14,7 @@ namespace {
 
 const Quat about_z = from_two_vectors({1, 0, 0}, {0, 0, 1});  // of a hinge's frame, whose axis is X
 
-Material bouncing(double restitution, double mu = 0) {
+Material bouncing_rod(double restitution, double mu = 0) {
     return {.friction_static = mu,
             .friction_dynamic = mu,
             .restitution = restitution,
@@ -49,7 +49,7 @@ Struck strike(double ball_mass, double speed, double restitution, double delay) 
             ->create_body({.shape = rod,
                            .position = {0, height, 0},
                            .mass = {.mass = 1, .inertia = Mat3::diagonal({inertia, 1e-3, inertia})},
-                           .material = bouncing(1),
+                           .material = bouncing_rod(1),
                            .allow_sleep = false})
             .value();
     };
@@ -65,7 +65,7 @@ Struck strike(double ball_mass, double speed, double restitution, double delay) 
                                             .position = {-half - radius - gap, -2, 0},
                                             .linear_velocity = {speed, 0, 0},
                                             .mass = {.mass = ball_mass},
-                                            .material = bouncing(restitution),
+                                            .material = bouncing_rod(restitution),
                                             .allow_sleep = false})
                              .value();
     world->step();
@@ -214,7 +214,7 @@ TEST(JointedImpact, RandomTreesAnswerAsTheWholeSystemOfEquationsSays) {
                 const Transform pose{definition.position, definition.rotation};
                 shell.children.push_back({SphereShape{radius}, {inverse_transform_point(pose, tree.ball), {}}});
                 definition.shape = world->create_shape(shell).value();
-                definition.material = bouncing(1);
+                definition.material = bouncing_rod(1);
             }
             handles.push_back(world->create_body(definition).value());
         }
@@ -234,7 +234,7 @@ TEST(JointedImpact, RandomTreesAnswerAsTheWholeSystemOfEquationsSays) {
                                                 .position = tree.ball - direction * (2 * radius + 0.3e-4 * speed),
                                                 .linear_velocity = direction * speed,
                                                 .mass = {.mass = striker_mass},
-                                                .material = bouncing(restitution),
+                                                .material = bouncing_rod(restitution),
                                                 .allow_sleep = false})
                                  .value();
         world->step();
@@ -275,7 +275,7 @@ double speed_after_strike_on_turntable(double rate, double delay, double restitu
                           ->create_body({.shape = sphere,
                                          .angular_velocity = {0, rate, 0},
                                          .mass = {.mass = 1},
-                                         .material = bouncing(1),
+                                         .material = bouncing_rod(1),
                                          .allow_sleep = false})
                           .value();
     const Quat along_rod = from_axis_angle({0, 1, 0}, angle);
@@ -289,7 +289,7 @@ double speed_after_strike_on_turntable(double rate, double delay, double restitu
                                             .position = {-2 * radius - delay * step * speed, 0, 0},
                                             .linear_velocity = {speed, 0, 0},
                                             .mass = {.mass = 1},
-                                            .material = bouncing(restitution),
+                                            .material = bouncing_rod(restitution),
                                             .allow_sleep = false})
                              .value();
     world->step();
@@ -323,7 +323,7 @@ std::vector<Vec3> state_after_own_strike(bool other_is_struck) {
                            .position = position,
                            .linear_velocity = velocity,
                            .mass = {.mass = 1},
-                           .material = bouncing(1),
+                           .material = bouncing_rod(1),
                            .allow_sleep = false})
             .value();
     };
@@ -361,7 +361,7 @@ std::vector<Vec3> state_in_slot_of_turning_body(double old_rate) {
     const double radius = 0.05, arm = 0.5;
     const auto sphere = world->create_shape(SphereShape{radius}).value();
     const auto wall = world->create_shape(PlaneShape{{1, 0, 0}, -radius - 2e-3}).value();
-    EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = wall, .material = bouncing(1)}));
+    EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = wall, .material = bouncing_rod(1)}));
     const auto add_pendulum = [&](Vec3 place, Vec3 velocity, Vec3 spin) {
         const auto body = world
                               ->create_body({.shape = sphere,
@@ -369,7 +369,7 @@ std::vector<Vec3> state_in_slot_of_turning_body(double old_rate) {
                                              .linear_velocity = velocity,
                                              .angular_velocity = spin,
                                              .mass = {.mass = 1},
-                                             .material = bouncing(1),
+                                             .material = bouncing_rod(1),
                                              .allow_sleep = false})
                               .value();
         const Vec3 hook = Vec3{0, arm, 0};
@@ -410,7 +410,7 @@ double cradle_energy_after(double seconds, double angle, double length, double r
                                              .position = {x + length * std::sin(lift), -length * std::cos(lift), 0},
                                              .rotation = from_axis_angle({0, 0, 1}, lift),
                                              .mass = {.mass = 1},
-                                             .material = bouncing(1),
+                                             .material = bouncing_rod(1),
                                              .allow_sleep = false})
                               .value();
         EXPECT_TRUE(world->create_joint({.joint = HingeJoint{},
@@ -442,7 +442,7 @@ TEST(JointedImpact, MoreJointsThanADirectSolveTakesHoldAsWell) {
     Random random(1);
     const auto plate = world
                            ->create_body({.shape = world->create_shape(BoxShape{{1, 0.1, 1}}).value(),
-                                          .material = bouncing(0.5),
+                                          .material = bouncing_rod(0.5),
                                           .allow_sleep = false})
                            .value();
     for (int i = 0; i < 600; ++i) {
@@ -453,7 +453,7 @@ TEST(JointedImpact, MoreJointsThanADirectSolveTakesHoldAsWell) {
                           ->create_body({.shape = world->create_shape(SphereShape{0.1}).value(),
                                          .position = {0.3, 0.5, 0.2},
                                          .linear_velocity = {0, -3, 0},
-                                         .material = bouncing(0.5)})
+                                         .material = bouncing_rod(0.5)})
                           .value();
     run(*world, 0.2);
     EXPECT_LT(length(world->pose(plate).position), 1e-6);
@@ -474,7 +474,7 @@ TEST(JointedImpact, ManyBlowsOnOneAssemblyReachALimitAndGainNothing) {
             const auto body =
                 world
                     ->create_body(
-                        {.shape = plank, .position = {x, 0, 0}, .material = bouncing(0.9), .allow_sleep = false})
+                        {.shape = plank, .position = {x, 0, 0}, .material = bouncing_rod(0.9), .allow_sleep = false})
                     .value();
             const Vec3 end = i == 0 ? Vec3{-length / 2, 0, 0} : Vec3{length / 2, 0, 0};
             ASSERT_TRUE(world->create_joint({.joint = BallJoint{},
@@ -491,7 +491,7 @@ TEST(JointedImpact, ManyBlowsOnOneAssemblyReachALimitAndGainNothing) {
                     world->create_body({.shape = sphere,
                                         .position = {i * length, 0.02 + radius + gap, 0.1 * k - 0.05 * (rows - 1)},
                                         .linear_velocity = {0, -speed, 0},
-                                        .material = bouncing(0.9),
+                                        .material = bouncing_rod(0.9),
                                         .allow_sleep = false}));
             }
         }
