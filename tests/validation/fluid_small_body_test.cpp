@@ -84,25 +84,27 @@ TEST(FluidSmallBody, DragKeepsMomentum) {
     EXPECT_NEAR(world->conserved().linear_momentum.x, before, 0.05 * before);
 }
 
-// Creeping motion, G. G. Stokes (1851): the weight against 6 π μ r v, at any step. The liquid has no weight here: what
-// gravity does to thick liquids beside walls is another matter.
+// Creeping motion, G. G. Stokes (1851): the weight less the buoyancy against 6 π μ r v, at any step, in liquids with and
+// without a weight of their own.
 TEST(FluidSmallBody, BallsSinkAsStokesSaysInLiquidsOfAnyViscosity) {
     Random random(22);
-    for (int trial = 0; trial < 8; ++trial) {
+    for (int trial = 0; trial < 16; ++trial) {
         SCOPED_TRACE(trial);
+        constexpr double liquid_density = 998, side = 0.48, depth = 0.6;
+        const bool has_weight = trial >= 8;
         const double radius = random.between(0.002, 0.01), density = random.between(1500, 8000);
-        const double weight = 4.0 / 3 * pi * radius * radius * radius * density * gravity;
+        const double weight =
+            4.0 / 3 * pi * radius * radius * radius * (density - (has_weight ? liquid_density : 0)) * gravity;
         // So thick that the Reynolds number stays below 0.1.
-        const double least = std::sqrt(weight * 998 / (3 * pi * 0.1));
+        const double least = std::sqrt(weight * liquid_density / (3 * pi * 0.1));
         const double viscosity = std::max(least, std::exp(random.between(std::log(0.3), std::log(100.0))));
         const double expected = weight / (6 * pi * viscosity * radius), rate = trial % 2 == 0 ? 60 : 240;
-        constexpr double side = 0.48, depth = 0.6;
         auto world = make_world({.time_step = 1 / rate});
         add_tank(*world, {{0, 0, 0}, {side, 0.9, side}});
         ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {side, depth, side}}},
                                          .viscosity = viscosity,
                                          .cell_size = 0.04,
-                                         .gravity_factor = 0,
+                                         .gravity_factor = has_weight ? 1.0 : 0.0,
                                          .allow_sleep = false}));
         const BodyHandle body = world
                                     ->create_body({.shape = world->create_shape(SphereShape{radius}).value(),

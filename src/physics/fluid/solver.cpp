@@ -191,8 +191,9 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     system_.build(grid_, settings_, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {is_tense_, settings_.components});
     obstacles_.list_areas(grid_);
+    begin_pressure(dt, workers);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
-    if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome);
+    if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome, workers);
     apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity, particle_mass(), dt, workers);
     for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
     immersed_.predict(dt, grid_);
@@ -227,11 +228,30 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
     });
 }
 
-void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
+// What is known of the pressure before it is solved for: that of the last step, and at the surface by its curvature.
+// Where the parts of a step are too few, the tension is the largest that is stable.
+void FluidSolver::begin_pressure(double dt, TaskPool& workers) {
+    impulse_.resize(system_.size());
+    for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
+    surface_.clear();
+    if (!is_tense_) return;
+    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
+    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
+}
+
+// The last pressure acts meanwhile, on the liquid and on the bodies in it, and is taken back for project() to find the
+// present one: without it viscosity met all that gravity does in the step, at walls most of all, and thick liquid that
+// should rest flowed.
+void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve viscosity");
+    const double scale = 1 / (properties_.density * grid_.cell_size());
+    subtract_known_gradient(grid_, {system_, impulse_, surface_, scale}, grid_.velocity, workers);
+    change_obstacles(impulse_, 1);
     const int iterations = viscosity_.solve(liquid, dt, settings_.viscosity, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= settings_.viscosity.max_iterations;
+    subtract_known_gradient(grid_, {system_, impulse_, surface_, -scale}, grid_.velocity, workers);
+    change_obstacles(impulse_, -1);
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
@@ -241,13 +261,8 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     const double h = grid_.cell_size(), rho = properties_.density;
     outflow(grid_, obstacles_, system_, flow_, workers);
     immersed_.add_outflow(grid_, flow_);
-    impulse_.resize(system_.size());
-    for (std::size_t row = 0; row < system_.size(); ++row) {
-        flow_[row] *= -rho / h;
-        impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
-    }
-    surface_.clear();
-    if (is_tense_) apply_surface_tension(dt, workers);
+    for (double& flow : flow_) flow *= -rho / h;
+    if (is_tense_) add_surface_pressure(grid_, system_, surface_, flow_, workers);
     system_.set_bodies(obstacles_.moving(), rho / h);
     const double tolerance = settings_.pressure.tolerance * rho * h * h / dt;
     const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
@@ -265,26 +280,29 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     });
 }
 
-// The pressure at the surface by its curvature. Where the parts of a step are too few, the tension is the largest that
-// is stable.
-void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
-    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
-    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
-    add_surface_pressure(grid_, system_, surface_, flow_, workers);
+FluidSolver::Push FluidSolver::push_on(const MovingObstacle& moving, std::span<const double> impulse) {
+    Push push;
+    for (const ObstacleArea& part : moving.areas) {
+        push.linear += part.area * impulse[part.row];
+        push.angular += part.moment * impulse[part.row];
+    }
+    return push;
+}
+
+void FluidSolver::change_obstacles(std::span<const double> impulse, double factor) {
+    for (MovingObstacle& moving : obstacles_.moving()) {
+        const Push push = push_on(moving, impulse);
+        moving.linear_velocity += factor * moving.response.linear_change(push.linear, push.angular);
+        moving.angular_velocity += factor * moving.response.angular_change(push.linear, push.angular);
+    }
 }
 
 void FluidSolver::push_obstacles(std::span<const double> impulse) {
+    change_obstacles(impulse, 1);
     for (MovingObstacle& moving : obstacles_.moving()) {
-        Vec3 linear, angular;
-        for (const ObstacleArea& part : moving.areas) {
-            linear += part.area * impulse[part.row];
-            angular += part.moment * impulse[part.row];
-        }
-        FluidObstacle& obstacle = *moving.obstacle;
-        obstacle.impulse += linear;
-        obstacle.angular_impulse += angular;
-        moving.linear_velocity += moving.response.linear_change(linear, angular);
-        moving.angular_velocity += moving.response.angular_change(linear, angular);
+        const Push push = push_on(moving, impulse);
+        moving.obstacle->impulse += push.linear;
+        moving.obstacle->angular_impulse += push.angular;
         release_liquid(moving);
     }
 }

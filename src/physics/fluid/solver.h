@@ -99,10 +99,15 @@ private:
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
-    void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome);
-    void apply_surface_tension(double dt, TaskPool& workers);
+    void begin_pressure(double dt, TaskPool& workers);
+    void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
+    struct Push {
+        Vec3 linear, angular;  // N s, N m s
+    };
+    static Push push_on(const MovingObstacle& moving, std::span<const double> impulse);
+    void change_obstacles(std::span<const double> impulse, double factor);
     void push_obstacles(std::span<const double> impulse);
 
     Vec3 origin_;

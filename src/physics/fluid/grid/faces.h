@@ -44,5 +44,8 @@ struct PressureGradient {
 /// surface, in cells). Other faces become unknown.
 void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
                        TaskPool& workers);
+/// The same for those of these faces that are known, and no other becomes unknown.
+void subtract_known_gradient(FluidGrid& grid, const PressureGradient& gradient,
+                             std::array<std::vector<float>, 3>& field, TaskPool& workers);
 
 }  // namespace embody::physics::fluid
