@@ -191,7 +191,8 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     system_.build(grid_, settings_, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {is_tense_, settings_.components});
     obstacles_.list_areas(grid_);
-    begin_pressure(dt, workers);
+    impulse_.resize(system_.size());
+    for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome, workers);
     apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity, particle_mass(), dt, workers);
@@ -228,29 +229,19 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
     });
 }
 
-// What is known of the pressure before it is solved for: that of the last step, and at the surface by its curvature.
-// Where the parts of a step are too few, the tension is the largest that is stable.
-void FluidSolver::begin_pressure(double dt, TaskPool& workers) {
-    impulse_.resize(system_.size());
-    for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
-    surface_.clear();
-    if (!is_tense_) return;
-    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
-    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
-}
-
 // The last pressure acts meanwhile, on the liquid and on the bodies in it, and is taken back for project() to find the
 // present one: without it viscosity met all that gravity does in the step, at walls most of all, and thick liquid that
 // should rest flowed.
 void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve viscosity");
-    const double scale = 1 / (properties_.density * grid_.cell_size());
-    subtract_known_gradient(grid_, {system_, impulse_, surface_, scale}, grid_.velocity, workers);
+    const double scale = dt / (properties_.density * grid_.cell_size());
+    viscosity_.begin(liquid, dt, settings_.viscosity, grid_, obstacles_);
+    subtract_last_gradient(grid_, scale, workers);
     change_obstacles(impulse_, 1);
-    const int iterations = viscosity_.solve(liquid, dt, settings_.viscosity, grid_, obstacles_);
+    const int iterations = viscosity_.solve(liquid, dt, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= settings_.viscosity.max_iterations;
-    subtract_known_gradient(grid_, {system_, impulse_, surface_, -scale}, grid_.velocity, workers);
+    subtract_last_gradient(grid_, -scale, workers);
     change_obstacles(impulse_, -1);
 }
 
@@ -262,7 +253,8 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     outflow(grid_, obstacles_, system_, flow_, workers);
     immersed_.add_outflow(grid_, flow_);
     for (double& flow : flow_) flow *= -rho / h;
-    if (is_tense_) add_surface_pressure(grid_, system_, surface_, flow_, workers);
+    surface_.clear();
+    if (is_tense_) apply_surface_tension(dt, workers);
     system_.set_bodies(obstacles_.moving(), rho / h);
     const double tolerance = settings_.pressure.tolerance * rho * h * h / dt;
     const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
@@ -278,6 +270,14 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
             grid_.pressure[cell] = row < 0 ? 0.0f : static_cast<float>(impulse_[row] / dt);
         });
     });
+}
+
+// The pressure at the surface by its curvature. Where the parts of a step are too few, the tension is the largest that
+// is stable.
+void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
+    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
+    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
+    add_surface_pressure(grid_, system_, surface_, flow_, workers);
 }
 
 FluidSolver::Push FluidSolver::push_on(const MovingObstacle& moving, std::span<const double> impulse) {

@@ -99,8 +99,8 @@ private:
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
-    void begin_pressure(double dt, TaskPool& workers);
     void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers);
+    void apply_surface_tension(double dt, TaskPool& workers);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
     struct Push {

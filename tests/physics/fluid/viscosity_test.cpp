@@ -45,12 +45,18 @@ struct FreeBlock : LiquidBlock {
     PressureSystem system;
 };
 
+// Iterations of a viscous step.
+int solve(const Viscosity& liquid, double dt, LiquidBlock& block) {
+    ViscositySystem system;
+    system.begin(liquid, dt, settings, block.grid, block.obstacles);
+    return system.solve(liquid, dt, block.grid, block.obstacles);
+}
+
 TEST(Viscosity, RigidMotionsStayAsTheyAre) {
     FreeBlock block({10, 9, 8});
     const auto motion = [](Vec3 p) { return Vec3{1, -2, 3} + cross(Vec3{2, 1, -1}, p); };
     block.set_velocity(motion);
-    ViscositySystem viscosity;
-    EXPECT_LE(viscosity.solve({1000, 500, 0}, 0.01, settings, block.grid, block.obstacles), most);
+    EXPECT_LE(solve({1000, 500, 0}, 0.01, block), most);
     for (const Cell& corner : block.grid.tiles()) {
         block.grid.for_cells(corner, [&](int cell, const Cell& c) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -88,8 +94,7 @@ TEST(Viscosity, TakesEnergyButNoMomentum) {
             return std::pair(momentum, energy);
         };
         const auto before = sums();
-        ViscositySystem viscosity;
-        EXPECT_LE(viscosity.solve({1000, 100, yield_stress}, 0.01, settings, block.grid, block.obstacles), most);
+        EXPECT_LE(solve({1000, 100, yield_stress}, 0.01, block), most);
         const auto after = sums();
         for (int a = 0; a < 3; ++a) EXPECT_NEAR(after.first[a], before.first[a], 0.02);
         EXPECT_LT(after.second, 0.8 * before.second);
@@ -115,8 +120,7 @@ TEST(Viscosity, ShearBetweenPlatesIsDampedAsTheEquationSays) {
     constexpr double pi = std::numbers::pi, density = 1000, viscosity = 200, dt = 0.02;
     const auto profile = [](double y) { return std::sin(pi * y / (cells * h)); };
     block.set_velocity([&](Vec3 p) { return Vec3{profile(p.y), 0, 0}; });
-    ViscositySystem equation;
-    EXPECT_LE(equation.solve({density, viscosity, 0}, dt, settings, block.grid, block.obstacles), most);
+    EXPECT_LE(solve({density, viscosity, 0}, dt, block), most);
     const double damped = 1 / (1 + viscosity / density * dt * 2 * (1 - std::cos(pi / cells)) / (h * h));
     EXPECT_LT(damped, 0.95);
     for (int i = 0; i < cells; ++i) {
@@ -136,8 +140,7 @@ TEST(Viscosity, AMovingPlateDragsAndIsDraggedBackAlike) {
     PressureSystem system;
     system.build(block.grid, {}, block.workers);
     block.set_velocity([](Vec3) { return Vec3{}; });
-    ViscositySystem equation;
-    EXPECT_LE(equation.solve({density, 200, 0}, 0.01, settings, block.grid, block.obstacles), most);
+    EXPECT_LE(solve({density, 200, 0}, 0.01, block), most);
     const MovingObstacle& moving = block.obstacles.moving().front();
     EXPECT_LT(moving.linear_velocity.x, 1);
     EXPECT_GT(moving.linear_velocity.x, 0);

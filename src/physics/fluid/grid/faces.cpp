@@ -194,46 +194,61 @@ void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, c
     });
 }
 
-namespace {
-
-// Whether the gradient of a solution is told at a face: it is open, and liquid is on one side at least.
-bool has_gradient(const FluidGrid& grid, int axis, int cell) {
-    return grid.open[axis][cell] > 0 && (grid.row[cell] >= 0 || grid.row[cell - grid.stride(axis)] >= 0);
-}
-
-// The difference of the solution across such a face, over the distance in cells: to the neighbour or to the surface.
-double difference_at(const FluidGrid& grid, const PressureGradient& gradient, int axis, int cell) {
-    const int below = cell - grid.stride(axis), upper = grid.row[cell], lower = grid.row[below];
-    if (upper >= 0 && lower >= 0) return gradient.x[upper] - gradient.x[lower];
-    const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
-    const float gap = gradient.system.gap_fraction(grid.surface[liquid], grid.surface[air]);
-    const double outside = gradient.surface.is_none() ? 0 : gradient.surface.at(liquid, air, gap);
-    return (gradient.x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
-}
-
-}  // namespace
-
 void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
                        TaskPool& workers) {
+    const PressureSystem& system = gradient.system;
+    const std::span<const double> x = gradient.x;
+    const SurfacePressure& surface = gradient.surface;
+    const double scale = gradient.scale;
     grid.for_tiles(workers, [&](const Cell& corner) {
         for (int axis = 0; axis < 3; ++axis) {
+            const int stride = grid.stride(axis);
             grid.for_cells(corner, [&](int cell, const Cell&) {
-                const bool is_known = has_gradient(grid, axis, cell);
-                grid.known[axis][cell] = static_cast<std::uint8_t>(is_known);
-                if (!is_known) return;
-                field[axis][cell] -= static_cast<float>(difference_at(grid, gradient, axis, cell) * gradient.scale);
+                const int below = cell - stride, upper = grid.row[cell], lower = grid.row[below];
+                std::uint8_t& known = grid.known[axis][cell];
+                if (grid.open[axis][cell] <= 0) {
+                    known = 0;
+                    return;
+                }
+                if (upper < 0 && lower < 0) {
+                    known = 0;
+                    return;
+                }
+                double difference = 0;
+                if (upper >= 0 && lower >= 0) {
+                    difference = x[upper] - x[lower];
+                } else {
+                    const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
+                    const float gap = system.gap_fraction(grid.surface[liquid], grid.surface[air]);
+                    const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
+                    difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
+                }
+                field[axis][cell] -= static_cast<float>(difference * scale);
+                known = 1;
             });
         }
     });
 }
 
-void subtract_known_gradient(FluidGrid& grid, const PressureGradient& gradient,
-                             std::array<std::vector<float>, 3>& field, TaskPool& workers) {
+void subtract_last_gradient(FluidGrid& grid, double scale, TaskPool& workers) {
     grid.for_tiles(workers, [&](const Cell& corner) {
         for (int axis = 0; axis < 3; ++axis) {
+            const int stride = grid.stride(axis);
+            const auto has_pressure = [&](int cell) { return grid.row[cell] >= 0 && grid.pressure[cell] != 0; };
+            const auto difference = [&](int cell) -> float {
+                if (grid.open[axis][cell] <= 0 || !has_pressure(cell) || !has_pressure(cell - stride)) return 0;
+                return grid.pressure[cell] - grid.pressure[cell - stride];
+            };
             grid.for_cells(corner, [&](int cell, const Cell&) {
-                if (!grid.known[axis][cell] || !has_gradient(grid, axis, cell)) return;
-                field[axis][cell] -= static_cast<float>(difference_at(grid, gradient, axis, cell) * gradient.scale);
+                if (!grid.known[axis][cell] || grid.open[axis][cell] <= 0) return;
+                const bool above = has_pressure(cell), below = has_pressure(cell - stride);
+                float change = 0;
+                if (above && below) {
+                    change = difference(cell);
+                } else if (above || below) {
+                    change = difference(above ? cell + stride : cell - stride);
+                }
+                grid.velocity[axis][cell] -= static_cast<float>(change * scale);
             });
         }
     });

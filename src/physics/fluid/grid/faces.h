@@ -44,8 +44,8 @@ struct PressureGradient {
 /// surface, in cells). Other faces become unknown.
 void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
                        TaskPool& workers);
-/// The same for those of these faces that are known, and no other becomes unknown.
-void subtract_known_gradient(FluidGrid& grid, const PressureGradient& gradient,
-                             std::array<std::vector<float>, 3>& field, TaskPool& workers);
+/// Adds −`scale` ∂p of the last step's pressure to the known faces beside liquid. Where there was no liquid in the last
+/// step the gradient is that of the next face inwards, and of one cell alone none.
+void subtract_last_gradient(FluidGrid& grid, double scale, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

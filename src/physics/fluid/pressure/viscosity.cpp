@@ -343,12 +343,15 @@ int ViscositySystem::iterate() {
     return result.end == GradientEnd::converged ? result.iterations : most + 1;
 }
 
-int ViscositySystem::solve(const Viscosity& liquid, double dt, const FluidViscositySettings& settings, FluidGrid& grid,
-                           FluidObstacles& obstacles) {
+void ViscositySystem::begin(const Viscosity& liquid, double dt, const FluidViscositySettings& settings,
+                            const FluidGrid& grid, const FluidObstacles& obstacles) {
     settings_ = settings;
-    const double h = grid.cell_size();
     number_faces(grid, obstacles);
     measure_rates(liquid, dt, grid);
+}
+
+int ViscositySystem::solve(const Viscosity& liquid, double dt, FluidGrid& grid, FluidObstacles& obstacles) {
+    const double h = grid.cell_size();
     list_strains(grid, obstacles, dt / (liquid.density * h * h));
     list_bodies(liquid, grid, obstacles);
     const std::size_t size = faces_.size() + fixed_.size() + 6 * bodies_.size();

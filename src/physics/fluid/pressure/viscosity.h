@@ -29,10 +29,12 @@ double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settin
 /// that it moves as unknowns (docs/physics/fluids.md, "Viscosity").
 class ViscositySystem {
 public:
+    /// Measures how fast the liquid is sheared, which a yield stress asks for.
+    void begin(const Viscosity& liquid, double dt, const FluidViscositySettings& settings, const FluidGrid& grid,
+               const FluidObstacles& obstacles);
     /// Changes the velocities of faces and of moving obstacles, and adds to the obstacles' impulses. Returns the
     /// iterations; one more than the settings' where they did not suffice.
-    int solve(const Viscosity& liquid, double dt, const FluidViscositySettings& settings, FluidGrid& grid,
-              FluidObstacles& obstacles);
+    int solve(const Viscosity& liquid, double dt, FluidGrid& grid, FluidObstacles& obstacles);
 
 private:
     /// A rate of strain: signed sum of up to four velocities, and its weight.
