@@ -401,7 +401,7 @@ GoldenScene stirred_water() {
 }
 
 constexpr SettingScene scenes[] = {
-    {"collision", "shots", shots, 60},
+    {"collision", "shots", shots},
     {"optimization", "sleepers", sleepers, 240},
     {"optimization", "sunk_wall", sunk_wall, 60},
     {"optimization", "towers", towers},
