@@ -11,7 +11,8 @@ namespace embody::cli {
 
 int run_soft(const BenchArguments& arguments) {
     if (!arguments.json) {
-        print_text("Milliseconds per step at 60 Hz, nothing asleep, beside 200 boxes in stacks. Workers 0: as many as pay.\n");
+        print_text(
+            "Milliseconds per step at 60 Hz, nothing asleep, beside 200 boxes in stacks. Workers 0: as many as pay.\n");
         print_text("nodes   tetrahedra  workers  falling  at rest    worst  deformables  foam   end state\n");
     }
     nlohmann::json rows = nlohmann::json::array();

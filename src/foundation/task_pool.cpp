@@ -36,8 +36,8 @@ double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Between two polls. False where another thread took the core: then it is better to sleep, since who is woken comes before
-// a thread that runs on and on, and who yields comes after it, some milliseconds later each time.
+// Between two polls. False where another thread took the core: then it is better to sleep, since who is woken comes
+// before a thread that runs on and on, and who yields comes after it, some milliseconds later each time.
 bool wait_a_little(int look) {
     if (look < looks_alone) {
 #if defined(__x86_64__)
@@ -50,8 +50,8 @@ bool wait_a_little(int look) {
     return seconds_now() - before < core_taken;
 }
 
-// Returns when `is_done` of the number: polls, then sleeps until its next change is notified, and repeats. Who changes it
-// does so in one order with all else (memory_order_seq_cst) and notifies then.
+// Returns when `is_done` of the number: polls, then sleeps until its next change is notified, and repeats. Who changes
+// it does so in one order with all else (memory_order_seq_cst) and notifies then.
 template <class Number, class Done>
 void await(const std::atomic<Number>& number, Done is_done) {
     while (true) {
@@ -136,8 +136,8 @@ struct alignas(64) PoolThread {
 struct TaskPool::State {
     const std::function<void(int)>* task = nullptr;  // of the present call of run()
     const char* zone = nullptr;                      // zone in which the task is run
-    // Count of the calls of run(), and the workers of the present one in the lowest byte: a thread that it leaves out reads
-    // both at once.
+    // Count of the calls of run(), and the workers of the present one in the lowest byte: a thread that it leaves out
+    // reads both at once.
     std::atomic<std::uint64_t> round{0};
     std::atomic<int> looks{looks_between_tasks};
     std::atomic<int> running{0};
@@ -196,8 +196,8 @@ struct TaskPool::State {
         round.store(calls << 8 | static_cast<std::uint64_t>(count), std::memory_order_release);
     }
 
-    // How long the present workers, the calling thread among them, were ready to run and on a core so far, s; of no core
-    // where the system does not tell.
+    // How long the present workers, the calling thread among them, were ready to run and on a core so far, s; of no
+    // core where the system does not tell.
     struct Times {
         double now = 0, ready = 0, core = 0;
     };

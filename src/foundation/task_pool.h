@@ -8,8 +8,8 @@
 
 namespace embody {
 
-/// Lets the workers of one task wait for each other, again and again. Spins first, as stages are microseconds apart, and
-/// sleeps where another thread takes the core.
+/// Lets the workers of one task wait for each other, again and again. Spins first, as stages are microseconds apart,
+/// and sleeps where another thread takes the core.
 class alignas(64) Barrier {  // on a cache line of its own: workers read what lies beside it
 public:
     explicit Barrier(int workers) : workers_(workers) {}
@@ -73,7 +73,8 @@ public:
     };
 
     /// One of many similar pieces of work, of any number of tasks: from its end on the pool knows how long it took, and
-    /// with Use::as_many_as_pay chooses by that how many workers the next one has. One at a time, by the calling thread.
+    /// with Use::as_many_as_pay chooses by that how many workers the next one has. One at a time, by the calling
+    /// thread.
     class Step {
     public:
         explicit Step(TaskPool& pool);
@@ -83,7 +84,8 @@ public:
 
     private:
         TaskPool& pool_;
-        double begin_ = 0, ready_begin_ = 0, core_begin_ = 0;  // s; of all its workers together: ready to run, on a core
+        double begin_ = 0, ready_begin_ = 0,
+               core_begin_ = 0;  // s; of all its workers together: ready to run, on a core
     };
 
 private:

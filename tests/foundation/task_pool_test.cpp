@@ -58,8 +58,7 @@ TEST_P(EachPool, StepsChooseHowManyWorkersRun) {
         ASSERT_LE(workers, GetParam());
         fewest = std::min(fewest, workers);
         std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
-        for (int task = 0; task < 3; ++task)
-            pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
+        for (int task = 0; task < 3; ++task) pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
         for (int worker = 0; worker < GetParam(); ++worker)
             ASSERT_EQ(calls[static_cast<std::size_t>(worker)], worker < workers ? 3 : 0);
     }

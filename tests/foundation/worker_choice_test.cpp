@@ -18,8 +18,8 @@ struct Machine {
     double serial = 0, parallel = 1;  ///< parts of the work, s by one worker
     int busy_cores = 0;               ///< used by others
 
-    // Workers with a core of their own share the parallel part; where one has none, all wait for it at each barrier, so that
-    // the part takes longer than alone.
+    // Workers with a core of their own share the parallel part; where one has none, all wait for it at each barrier, so
+    // that the part takes longer than alone.
     [[nodiscard]] double seconds(int workers) const {
         const bool is_short_of_cores = workers + busy_cores > max_workers;
         const double slower = workers > 1 && is_short_of_cores ? 2.5 : 1;
@@ -44,7 +44,8 @@ Spent spend(WorkerChoice& choice, const Machine& machine, Random& random, int st
         EXPECT_GE(workers, 1);
         EXPECT_LE(workers, machine.max_workers);
         spent.chosen += work * machine.seconds(workers);
-        for (int each = 1; each <= machine.max_workers; ++each) spent.alone[static_cast<std::size_t>(each)] += work * machine.seconds(each);
+        for (int each = 1; each <= machine.max_workers; ++each)
+            spent.alone[static_cast<std::size_t>(each)] += work * machine.seconds(each);
         choice.note(work * machine.seconds(workers), machine.without_core(workers));
     }
     return spent;
@@ -61,7 +62,8 @@ TEST(WorkerChoice, ComesNearTheFastestNumberWhateverElseRuns) {
         for (int phase = 0; phase < phases; ++phase) {
             machine.busy_cores = static_cast<int>(random.between(0, machine.max_workers + 1));
             const Spent spent = spend(choice, machine, random, 3000);
-            const double best = *std::min_element(spent.alone.begin() + 1, spent.alone.begin() + 1 + machine.max_workers);
+            const double best =
+                *std::min_element(spent.alone.begin() + 1, spent.alone.begin() + 1 + machine.max_workers);
             // Trials, and the steps before the change was seen.
             excess += spent.chosen / best - 1;
             EXPECT_LT(spent.chosen, 1.2 * best) << "run " << run << ", phase " << phase << ", " << machine.max_workers

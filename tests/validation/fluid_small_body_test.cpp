@@ -84,8 +84,8 @@ TEST(FluidSmallBody, DragKeepsMomentum) {
     EXPECT_NEAR(world->conserved().linear_momentum.x, before, 0.05 * before);
 }
 
-// Creeping motion, G. G. Stokes (1851): the weight less the buoyancy against 6 π μ r v, at any step, in liquids with and
-// without a weight of their own.
+// Creeping motion, G. G. Stokes (1851): the weight less the buoyancy against 6 π μ r v, at any step, in liquids with
+// and without a weight of their own.
 TEST(FluidSmallBody, BallsSinkAsStokesSaysInLiquidsOfAnyViscosity) {
     Random random(22);
     for (int trial = 0; trial < 16; ++trial) {

@@ -21,9 +21,10 @@ struct WorldSettings {
     bool shock_propagation = true;   ///< paper, section IV
     double max_linear_speed = 1e4;   ///< a faster body is slowed to this and the report says so, m/s
     double max_angular_speed = 2e4;  ///< the same for turning, rad/s
-    int workers = 1;  ///< threads that a step may use, 1 … 64; 0: as many as pay on this machine (TaskPool), fewer while
-                      ///< other programs need its cores; small worlds use one whatever is set. Same result.
-    int lanes = 0;    ///< contacts solved by one instruction: 4, 8 or 16; 0: as many as the processor can. Same result.
+    /// Threads that a step may use, 1 … 64; 0: as many as pay on this machine (TaskPool), fewer while other programs
+    /// need its cores; small worlds use one whatever is set. Same result.
+    int workers = 1;
+    int lanes = 0;  ///< contacts solved by one instruction: 4, 8 or 16; 0: as many as the processor can. Same result.
     SolverSettings solver;  ///< the numbers that steer the algorithms
 };
 

@@ -9,8 +9,9 @@
 
 namespace embody::physics::linear {
 
-/// Symmetric positive definite matrix of numbers whose row i is zero before column first(i), and its factor L Lᵀ, which has
-/// the same envelope. (A. George, J. W. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, ch. 4.)
+/// Symmetric positive definite matrix of numbers whose row i is zero before column first(i), and its factor L Lᵀ, which
+/// has the same envelope. (A. George, J. W. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981,
+/// ch. 4.)
 class EnvelopeCholesky {
 public:
     /// Sets the matrix to zero. `first`: a row's first column, at most the row's own.

@@ -25,7 +25,10 @@ struct DenseSystem {
     std::size_t nodes, bodies;
 
     DenseSystem(std::size_t node_count, std::size_t body_count, std::size_t twists)
-        : matrix(3 * node_count + 6 * body_count + twists), load(matrix.size, 0.0), nodes(node_count), bodies(body_count) {}
+        : matrix(3 * node_count + 6 * body_count + twists),
+          load(matrix.size, 0.0),
+          nodes(node_count),
+          bodies(body_count) {}
     [[nodiscard]] std::size_t body_row(std::size_t body) const { return 3 * nodes + 6 * body; }
     [[nodiscard]] std::size_t twist_row(std::size_t twist) const { return 3 * nodes + 6 * bodies + twist; }
 
@@ -45,8 +48,9 @@ struct DenseSystem {
             by.emplace_back(3 * spring.node[a], Mat3::diagonal(Vec3{1, 1, 1} * spring.weight[a]));
         if (has_body) {
             by.emplace_back(body_row(spring.body), Mat3::diagonal({-1, -1, -1}));
-            by.emplace_back(body_row(spring.body) + 3, Mat3{cross(Vec3{-1, 0, 0}, spring.arm), cross(Vec3{0, -1, 0}, spring.arm),
-                                                            cross(Vec3{0, 0, -1}, spring.arm)});
+            by.emplace_back(body_row(spring.body) + 3,
+                            Mat3{cross(Vec3{-1, 0, 0}, spring.arm), cross(Vec3{0, -1, 0}, spring.arm),
+                                 cross(Vec3{0, 0, -1}, spring.arm)});
         }
         for (const auto& [row, one] : by) {
             add(row, transpose(one) * spring.load);
@@ -159,7 +163,8 @@ TEST(RopeSystem, SolvesAsEliminationDoes) {
         ASSERT_TRUE(system.solve(springs, inertias, fixed, moves, body_moves, moments)) << iteration;
         const std::vector<double> right = dense.matrix.solve(dense.load);
         const auto expect = [&](std::size_t row, const Vec3& found) {
-            for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(found[static_cast<int>(c)], right[row + c], 1e-10) << iteration << ", row " << row + c;
+            for (std::size_t c = 0; c < 3; ++c)
+                ASSERT_NEAR(found[static_cast<int>(c)], right[row + c], 1e-10) << iteration << ", row " << row + c;
         };
         for (std::size_t i = 0; i < nodes; ++i) expect(3 * i, moves[i]);
         for (std::size_t b = 0; b < bodies; ++b) {

@@ -103,7 +103,8 @@ void RopeSystem::fill_matrix(std::span<const TouchSpring> springs, std::span<con
                 if (!fixed[spring.node[a]]) add_coupling(first + r, spring.node[a], -spring.weight[a] * force);
             }
             values_[first + r] -= dot(unit_move(r, spring.arm), spring.load);
-            for (std::size_t c = 0; c <= r; ++c) matrix_.at(first + r, first + c) += dot(unit_move(c, spring.arm), force);
+            for (std::size_t c = 0; c <= r; ++c)
+                matrix_.at(first + r, first + c) += dot(unit_move(c, spring.arm), force);
         }
     }
     for (const TurnCoupling& coupling : couplings) {

@@ -36,8 +36,8 @@ struct TurnStiffness {
 };
 
 /// The linear system of one iteration of Newton's method of a rope: its nodes, six unknowns for each touched body, and
-/// twists, one each. A body touches few of the nodes: its unknowns stand behind the last of these, so that the rows of the
-/// factor are no longer than from the first to the last node that a body touches.
+/// twists, one each. A body touches few of the nodes: its unknowns stand behind the last of these, so that the rows of
+/// the factor are no longer than from the first to the last node that a body touches.
 class RopeSystem {
 public:
     /// All zero.
@@ -64,9 +64,9 @@ private:
                      const std::vector<bool>& fixed);
     bool solve_twists(const std::vector<bool>& fixed, std::vector<double>& moments);
 
-    std::vector<std::uint32_t> moving_;               // bodies that are unknowns
-    std::vector<std::size_t> node_row_, body_row_;    // first row of a node, of a body; none: it is no unknown
-    std::vector<std::size_t> first_column_;           // by row
+    std::vector<std::uint32_t> moving_;                // bodies that are unknowns
+    std::vector<std::size_t> node_row_, body_row_;     // first row of a node, of a body; none: it is no unknown
+    std::vector<std::size_t> first_column_;            // by row
     std::vector<std::size_t> first_node_, last_node_;  // by body: that it touches
     EnvelopeCholesky matrix_;
     std::vector<double> values_;  // by row: the load, then the solution
