@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Liquids with what bends: soft solids, ropes and cloth (docs/physics/coupling.md, "Liquids and what bends").
+// Liquids with what bends: soft solids and ropes; sheets not yet (docs/physics/coupling.md, "Liquids and what bends").
 #include "foundation/random.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "validation/fluid_scenes.h"
@@ -11,12 +11,6 @@ constexpr double water_density = 998;  // kg/m³, the fluids' default
 
 SoftSolid foam_of(double density, double youngs_modulus) {
     return {.density = density, .youngs_modulus = youngs_modulus, .poisson_ratio = 0.2, .rayleigh_damping = 0.01};
-}
-
-double lowest_node(const World& world, DeformableHandle handle) {
-    double least = 1e300;
-    for (const Vec3 p : world.node_positions(handle)) least = std::min(least, p.y);
-    return least;
 }
 
 Vec3 mean_velocity_of(const World& world, DeformableHandle handle) {
@@ -107,21 +101,19 @@ TEST(FluidRope, LighterThanWaterItFloats) {
 }
 
 // A block of liquid flies past what is thrown into it: nothing else acts. With one substep a step the way of the centre
-// of mass tells the momentum that the nodes carry. What ropes and sheets have had beyond the liquid's force in the last
+// of mass tells the momentum that the nodes carry. What ropes have had beyond the liquid's force in the last
 // step, it has in the next one; drops that leave the block together with a solid are not counted with it.
 TEST(FluidDeformables, KeepTheCommonMomentum) {
     Random random(8);
     for (int trial = 0; trial < 6; ++trial) {
-        const int kind = trial % 3;
+        const bool is_solid = trial % 2 == 1;
         SCOPED_TRACE(trial);
         auto world = make_world({.gravity = {0, 0, 0}, .deformable_substeps = 1});
         const FluidHandle water =
             world->create_fluid({.boxes = {{{0, 0, 0}, {0.3, 0.3, 0.3}}}, .cell_size = 0.03}).value();
-        DeformableDefinition thrown = kind == 0   ? rope_between({-0.1, 0.14, 0.1}, {0.1, 0.16, 0.2}, 0.02)
-                                      : kind == 1 ? tetrahedral_brick({0.1, 0.1, 0.1}, {3, 3, 3}, foam_of(300, 1e5))
-                                                  : cloth_rectangle(0.16, 0.16, 0.03);
-        if (kind == 1) thrown.pose.position = {0.02, 0.1, 0.1};
-        if (kind == 2) thrown.pose.position = {0.05, 0.15, 0.15};
+        DeformableDefinition thrown = is_solid ? tetrahedral_brick({0.1, 0.1, 0.1}, {3, 3, 3}, foam_of(300, 1e5))
+                                               : rope_between({-0.1, 0.14, 0.1}, {0.1, 0.16, 0.2}, 0.02);
+        if (is_solid) thrown.pose.position = {0.02, 0.1, 0.1};
         thrown.linear_velocity = {random.between(1, 3), random.between(-1, 1), random.between(-1, 1)};
         const DeformableHandle handle = world->create_deformable(thrown).value();
         const double mass = world->mass(handle), liquid = volume_of(*world, water) * water_density;
@@ -133,7 +125,7 @@ TEST(FluidDeformables, KeepTheCommonMomentum) {
             if (i < 14) continue;
             const Vec3 error = own + liquid * mean_velocity_of(*world, water) - all;
             RecordProperty("error_" + std::to_string(trial), std::to_string(length(error) / length(all)));
-            const double kept = kind == 1 ? 5e-3 : 1e-3;
+            const double kept = is_solid ? 5e-3 : 1e-3;
             EXPECT_LT(length(error), kept * length(all));
             EXPECT_LT(length(own), 0.8 * length(all));
         }
@@ -221,54 +213,35 @@ TEST(FluidDeformables, HaveTheSameBitsForAnyNumberOfWorkersAndLanes) {
     }
 }
 
-// On edge only friction holds it; flat, it has water to push aside.
-TEST(FluidCloth, WetItSinks) {
-    for (const bool is_flat : {false, true}) {
-        SCOPED_TRACE(is_flat);
+// Water that falls on a sheet held at its corners has no more speed than from its fall, whether it goes through or not.
+TEST(FluidCloth, WaterThatFallsOnATautSheetDoesNotFlyApart) {
+    Random random(9);
+    for (int trial = 0; trial < 4; ++trial) {
+        SCOPED_TRACE(trial);
         auto world = make_world({});
-        const double side = 0.48, depth = 0.5;
-        add_tank(*world, {{0, 0, 0}, {side, 0.8, side}});
-        ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {side, depth, side}}}, .cell_size = 0.04}));
-        DeformableDefinition sheet = cloth_rectangle(0.2, 0.2, 0.025, {.area_density = 0.3, .bend_stiffness = 1e-3});
-        sheet.pose.position = {side / 2, 0.34, side / 2};
-        if (!is_flat) sheet.pose.rotation = from_axis_angle({1, 0, 0}, pi / 2);
-        sheet.contact_radius = 0.002;
-        const DeformableHandle handle = world->create_deformable(sheet).value();
-        run(*world, 2);
-        const double sunk = 0.34 - world->center_of_mass(handle).y;
-        RecordProperty(is_flat ? "flat" : "on_edge", std::to_string(sunk));
-        EXPECT_GT(sunk, is_flat ? 0.003 : 0.15);
+        add_tank(*world, {{-0.6, 0, -0.6}, {0.6, 1.5, 0.6}});
+        DeformableDefinition sheet = cloth_rectangle(
+            0.6, 0.6, 0.04,
+            {.area_density = random.between(0.1, 0.5), .stretch_stiffness = random.between(2000, 10000)});
+        for (std::uint32_t i = 0; i < sheet.nodes.size(); ++i) {
+            const Vec3 p = sheet.nodes[i];
+            if (std::min(std::fabs(p.x), std::fabs(p.z)) > 0.3 - 1e-6) sheet.pinned.push_back(i);
+        }
+        ASSERT_FALSE(sheet.pinned.empty());
+        sheet.pose.position = {0, 0.5, 0};
+        ASSERT_TRUE(world->create_deformable(sheet));
+        const double above = random.between(0.05, 0.3), top = 0.5 + above + 0.12;
+        const FluidHandle water =
+            world->create_fluid({.boxes = {{{-0.1, 0.5 + above, -0.1}, {0.1, top, 0.1}}}, .cell_size = 0.03}).value();
+        const std::size_t count = world->fluid_particles(water).positions.size();
+        double fastest = 0;
+        for (int i = 0; i < 60; ++i) {
+            world->step();
+            for (const Vec3f v : world->fluid_particles(water).velocities) fastest = std::max(fastest, length(Vec3(v)));
+        }
+        EXPECT_EQ(world->fluid_particles(water).positions.size(), count);
+        EXPECT_LT(fastest, 1.5 * std::sqrt(2 * gravity * top));  // what sprays off the ground is somewhat faster
     }
-}
-
-// It spans a shaft. Darcy lets Δp/R through, 17 mm/s under 0.1 m of water.
-TEST(FluidCloth, StretchedOverAFrameItHoldsWaterForAMomentAndDrips) {
-    auto world = make_world({});
-    constexpr double side = 0.2, height = 0.3;
-    add_tank(*world, {{0, 0, 0}, {side, 0.6, side}});
-    DeformableDefinition sheet = cloth_rectangle(side, side, 0.02, {.area_density = 0.3, .stretch_stiffness = 5000});
-    for (std::uint32_t i = 0; i < sheet.nodes.size(); ++i) {
-        const Vec3 p = sheet.nodes[i];
-        if (std::max(std::fabs(p.x), std::fabs(p.z)) > side / 2 - 1e-6) sheet.pinned.push_back(i);
-    }
-    sheet.collision_mask = 0;
-    sheet.pose.position = {side / 2, height, side / 2};
-    const DeformableHandle cloth = world->create_deformable(sheet).value();
-    const FluidHandle water =
-        world->create_fluid({.boxes = {{{0, height, 0}, {side, height + 0.1, side}}}, .cell_size = 0.02}).value();
-    const auto below = [&] {
-        const FluidParticles particles = world->fluid_particles(water);
-        double count = 0;
-        for (const Vec3f p : particles.positions) count += particles.origin.y + p.y < height - 0.06;
-        return count / static_cast<double>(particles.positions.size());
-    };
-    run(*world, 0.3);
-    EXPECT_LT(below(), 0.15);
-    run(*world, 0.7);
-    RecordProperty("below_after_a_second", std::to_string(below()));
-    EXPECT_GT(lowest_node(*world, cloth), height - 0.06);
-    EXPECT_GT(below(), 0.01);
-    EXPECT_LT(below(), 0.4);
 }
 
 }  // namespace

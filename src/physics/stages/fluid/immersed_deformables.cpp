@@ -235,8 +235,9 @@ void set_flow(const FluidAccess& world, DeformableRecord& record) {
 std::vector<std::uint32_t> deformables_near(const FluidAccess& world, const FluidRecord& fluid) {
     std::vector<std::uint32_t> slots;
     const Bounds reach = liquid_reach(world, fluid);
+    // Without sheets: water that falls on a taut one flies apart (docs/physics/coupling.md, "Falls short").
     for_each_deformable(world, [&](std::uint32_t slot, const DeformableRecord& record) {
-        if (record.definition.enabled && overlaps(reach, record.bounds())) slots.push_back(slot);
+        if (record.definition.enabled && !record.cloth() && overlaps(reach, record.bounds())) slots.push_back(slot);
     });
     return slots;
 }
