@@ -31,7 +31,7 @@ double margin_of(const Bounds& bounds) {
 // Motion in a step, over the margin, below which a body's bounds stay where they are: they hold it for some steps, and
 // while all bodies are slow boxes at rest are compared. Faster bodies' bounds travel with them, so that what flies side
 // by side is as far apart as at rest (BroadPhase.pairs_do_not_depend_on_a_common_speed).
-constexpr double max_resting_motion = 0.25;
+constexpr double max_resting_motion = 0.25;  // of the margin
 
 // The enlarged bounds of a body that travels by `motion` from `bounds` on.
 MovingBox enlarged_for(const Bounds& bounds, Vec3 motion) {

@@ -93,7 +93,7 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
 // What bends may fill many cells: the surface goes on through them, layer by layer from around, each as the mean of its
 // neighbours.
 void extend_into_immersed(FluidGrid& grid, float min_room) {
-    constexpr float unknown = 2;  // no surface: these are within ±1
+    constexpr float unknown = 2;  // cells; no surface: these are within ±1
     std::vector<int> left;
     for (const int cell : grid.immersed_cells) {
         if (grid.room[cell] < min_room && grid.obstacle[cell] > 0) left.push_back(cell);

@@ -23,14 +23,14 @@ double cross_flow(double speed, double diameter, double kinematic_viscosity) {
 
 // Friction along a cylinder, by its surface: 0.008 (ESDU 80025, smooth cylinders), and in slow flow half of the drag
 // across (G. I. Taylor 1952; R. G. Cox 1970).
-constexpr double skin_friction = 0.008;
+constexpr double skin_friction = 0.008;  // of ρ/2 u²
 
 // What cloth lets through, 1/m: pressure over viscosity and speed (Darcy). A dense woven cotton lets 0.1 m/s of air
 // through at 100 Pa (ISO 9237 tells it at that pressure; 0.01 to 1 m/s are usual), and air has 1.8e-5 Pa s.
-constexpr double fabric_resistance = 100 / (0.1 * 1.8e-5);
+constexpr double fabric_resistance = 100 / (0.1 * 1.8e-5);  // 1/m
 // Friction along cloth: of a smooth plate, 0.074 Re^(-1/5), is 0.005 at Re = 7e5 (H. Schlichting, "Boundary-Layer
 // Theory", 7th edition 1979, fig. 21.2), by each side.
-constexpr double plate_friction = 0.005;
+constexpr double plate_friction = 0.005;  // of ρ/2 u²
 
 ImmersedDrag drag_of_cylinder(const ImmersedForm& form, Vec3 slip, const DragLiquid& liquid) {
     const double nu = liquid.viscosity / liquid.density, d = form.size;

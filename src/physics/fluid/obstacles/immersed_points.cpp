@@ -21,7 +21,7 @@ namespace embody::physics::fluid {
 namespace {
 
 // Least fraction of a control volume that counts as liquid: keeps mobilities finite where a solid fills it.
-constexpr double min_liquid = 0.01;
+constexpr double min_liquid = 0.01;  // of the volume
 
 std::array<float, 3> to_place(Vec3 p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
@@ -60,7 +60,7 @@ void ImmersedPoints::begin(std::span<ImmersedPoint> points, Vec3 origin) {
 
 void ImmersedPoints::add_reach(double dt, double cell_size, std::vector<Bounds>& boxes) const {
     // Neighbours in the list are so in space: a box for some together.
-    constexpr std::size_t together = 64;
+    constexpr std::size_t together = 64;  // points
     for (std::size_t first = 0; first < points_.size(); first += together) {
         Bounds box;
         double fastest = 0;

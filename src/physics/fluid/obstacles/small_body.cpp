@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 // A force F on the faces around a place moves a viscous liquid there by F/(g μ h), h the cell's length: g of trilinear
 // weights by P. Ahlrichs, B. Dünweg, "Simulation of a single polymer chain in solution", J. Chem. Phys. 111 (1999).
-constexpr double grid_mobility = 25;
+constexpr double grid_mobility = 25;  // g, a number
 
 // Drag against the liquid's velocity at the body, of which a part is the body's own doing: in creeping flow 1/D less
 // 1/(g μ h). Where the liquid is swept on within a cell, Re of the cell's length above one, it does not see that.
