@@ -85,10 +85,7 @@ void add_contacts_of_deformables(const WorldState& world, std::vector<DrawnConta
         const DeformableRecord& record = world.deformables.records.at(slot);
         if (!record.definition.enabled) continue;
         if (record.solid()) add_solid_contacts(record, dt, contacts);
-        if (const ClothSheet* cloth = record.cloth()) {
-            add_springs(record, cloth->springs(), dt, contacts);
-            add_thin_contacts(cloth->layer_contacts(), dt, contacts);
-        }
+        if (const ClothSheet* cloth = record.cloth()) add_springs(record, cloth->springs(), dt, contacts);
         if (const RopeLine* rope = record.rope()) add_springs(record, rope->springs(), dt, contacts);
     }
     add_thin_contacts(world.deformables.thin_contacts, dt, contacts);

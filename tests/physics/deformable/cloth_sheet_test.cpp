@@ -295,48 +295,5 @@ TEST(ClothSheet, BallOnAPinnedSheetIsHeldWithItsWholeWeight) {
     }
 }
 
-// How many edges of the sheet pass through triangles of it.
-int crossings(const std::vector<Vec3>& nodes, const Cloth& cloth) {
-    int count = 0;
-    for (const auto& t : cloth.triangles) {
-        const Vec3 a = nodes[t[0]], b = nodes[t[1]], c = nodes[t[2]], normal = cross(b - a, c - a);
-        for (const auto& other : cloth.triangles) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t i = other[k], j = other[(k + 1) % 3];
-                if (i > j || std::ranges::find(t, i) != t.end() || std::ranges::find(t, j) != t.end()) continue;
-                const Vec3 p = nodes[i], q = nodes[j];
-                const double above = dot(p - a, normal), below = dot(q - a, normal);
-                if (above * below >= 0) continue;
-                const Vec3 x = p + (above / (above - below)) * (q - p);
-                count += dot(cross(b - a, x - a), normal) > 0 && dot(cross(c - b, x - b), normal) > 0 &&
-                         dot(cross(a - c, x - c), normal) > 0;
-            }
-        }
-    }
-    return count;
-}
-
-TEST(ClothSheet, LayersDoNotPassThroughEachOther) {
-    // A strip falls on its end and folds itself up on the floor.
-    auto definition = cloth_rectangle(0.15, 0.6, 0.02, {.rayleigh_damping = 0.01});
-    definition.pose.rotation = from_axis_angle({1, 0, 0}, std::acos(-1.0) / 2 - 0.05);
-    definition.pose.position = {0, 0.32, 0};
-    Scene scene(definition);
-    scene.substep.air_density = 1.2;
-    LooseBody floor(PlaneShape{{0, 1, 0}, 0}, {}, 0.5);
-    scene.bodies.push_back(floor.body);
-    const auto& cloth = std::get<Cloth>(definition.matter);
-    int worst = 0;
-    for (int i = 0; i < 180; ++i) {
-        scene.step();
-        worst = std::max(worst, crossings(scene.deformable.nodes().position, cloth));
-    }
-    double highest = 0;
-    for (const Vec3 x : scene.deformable.nodes().position) highest = std::max(highest, x.y);
-    EXPECT_EQ(worst, 0);
-    EXPECT_GT(highest, 0.004);  // some layers, each 2 mm thick
-    EXPECT_LT(highest, 0.15);
-}
-
 }  // namespace
 }  // namespace embody::physics::deformable

@@ -42,6 +42,7 @@ struct DeformableScene {
     double radius;
     std::unique_ptr<CollisionShape> node_ball;
     std::vector<std::uint32_t> all_nodes;
+    ClothSolver solver;
     TaskPool workers{1};
     Substep substep{.h = 1.0 / 60, .gravity = {0, -gravity, 0}, .air_density = 0};
     std::vector<NodeContact> contacts;
@@ -64,8 +65,28 @@ struct DeformableScene {
         if constexpr (std::is_same_v<Deformable, RopeLine>)
             deformable.advance(substep, contacts, segment_contacts, attachments, bodies);
         else
-            deformable.advance(substep, contacts, {}, attachments, bodies, workers);
+            advance_sheet();
         for (TouchedBody& body : bodies) move_on(body);
+    }
+    // A sheet that meets neither itself nor others.
+    void advance_sheet() {
+        deformable.begin(substep, contacts, {}, attachments, bodies, workers);
+        solver.set(substep.settings.cloth);
+        std::vector<Vec3> moves;
+        for (const Vec3 velocity : deformable.nodes().mean_velocity) moves.push_back(substep.h * velocity);
+        std::vector<BodyMove> body_moves(bodies.size());
+        TouchSprings& touch = deformable.touch();
+        touch.choose(moves, body_moves, true);
+        const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
+        for (int solves = 1;; ++solves) {
+            solver.solve(std::array{deformable.system()}, {}, touch.springs(), inertias, moves, body_moves, workers);
+            // The last solve's springs stay as they were in it.
+            TouchSprings next = touch;
+            if (solves == substep.settings.cloth.max_solves || !next.choose(moves, body_moves, false)) break;
+            touch = std::move(next);
+        }
+        deformable.finish(substep, moves, body_moves, {}, bodies);
+        deformable.move_nodes(moves, substep.h);
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.
     void move_on(TouchedBody& body) const {

@@ -22,8 +22,13 @@ struct ThinContactSettings {
     /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct at most a
     /// tenth a step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
-    /// Overlap of a sheet's own layers, over the sum of both radii, from which on their contacts remember no force:
-    /// layers that something holds in each other would push ever harder. Test: Settings.AreNoticed.
+    /// Stiffness of a contact of sheets and ropes over that of the softer side's nodes where half the distance that they
+    /// keep is left; it grows with depth over distance. Test: Settings.AreNoticed.
+    double depth_stiffness_factor = 0.3;
+    /// Depth, over that distance, up to which it grows. Test: Settings.AreNoticed.
+    double max_stiff_depth = 0.95;
+    /// Overlap with faces that leave a node no room, in contact radii, from which on it remembers no force of theirs.
+    /// Test: ClothSheet.FacesThatLeaveItNoRoomPushItNoHarderFromStepToStep.
     double memory_depth = 0.2;
     /// Barycentric weight above which a node bears the load on a contact. Test: Settings.AreNoticed.
     double min_load_weight = 0.1;
@@ -68,6 +73,8 @@ inline constexpr auto settings_of<ThinContactSettings> = std::tuple{
     Setting{"recovery_stiffness_factor", &ThinContactSettings::recovery_stiffness_factor, 1e-3, 1e4},
     Setting{"recovery_speed", &ThinContactSettings::recovery_speed, 0, 1e3, "m/s"},
     Setting{"recovery_fraction", &ThinContactSettings::recovery_fraction, 0, 1},
+    Setting{"depth_stiffness_factor", &ThinContactSettings::depth_stiffness_factor, 0, 1e3},
+    Setting{"max_stiff_depth", &ThinContactSettings::max_stiff_depth, 0, 0.999},
     Setting{"memory_depth", &ThinContactSettings::memory_depth, 1e-6, 1e3},
     Setting{"min_load_weight", &ThinContactSettings::min_load_weight, 0, 1},
     Setting{"load_memory", &ThinContactSettings::load_memory, 0, 1},

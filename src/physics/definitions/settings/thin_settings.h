@@ -9,47 +9,36 @@ namespace embody::physics {
 struct ClothSettings {
     /// Maximum linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
     int max_solves = 4;
+    /// Further solves in a substep with contacts of what would pass through each other. Test: Settings.AreNoticed.
+    int max_meeting_solves = 4;
     /// Residual at which a solve ends, over that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.
     /// Witkin, "Large steps in cloth simulation", 1998, section 5.3, end in that norm too. Test: Settings.AreNoticed.
     double gradient_tolerance = 5e-3;
     /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
     /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
-    int max_parts = 4;
+    int max_parts = 16;
     /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
     /// an edge a node comes to a triangle that was no candidate. Test: Settings.AreNoticed.
     double max_layer_travel = 0.5;
     /// Distance within which features of a sheet at rest belong to one layer, over the distance that layers keep.
     /// Source: above the 2 within which contacts are looked for. Test: Settings.AreNoticed.
     double same_layer_reach = 3;
-    /// Distance that layers keep where springs have failed, over the distance that springs keep. Test:
-    /// Settings.AreNoticed.
-    double min_gap_fraction = 0.5;
     /// Compliance of a node that lies on a body, over its own compliance: a node on a body moves last. Test:
     /// Settings.AreNoticed.
     double compliance_on_body = 0.05;
-    /// Maximum sweeps that push layers apart. Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of
-    /// collisions, contact and friction for cloth animation", 2002, go on with rigid zones after a few sweeps too.
-    /// Test: Settings.AreNoticed.
-    int parting_iterations = 10;
-    /// Distance after these sweeps over that before below which nodes move together for the substep. Source of the
-    /// method: X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments", 1997.
-    /// Test: Settings.AreNoticed.
-    double joining_gap_fraction = 0.2;
 };
 
 template <>
 inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"max_solves", &ClothSettings::max_solves, 1, 1000},
+    Setting{"max_meeting_solves", &ClothSettings::max_meeting_solves, 0, 1000},
     Setting{"gradient_tolerance", &ClothSettings::gradient_tolerance, 1e-12, 1e3},
     Setting{"max_gradient_iterations", &ClothSettings::max_gradient_iterations, 1, 1e6},
     Setting{"max_parts", &ClothSettings::max_parts, 1, 64},
     Setting{"max_layer_travel", &ClothSettings::max_layer_travel, 1e-3, 1e3},
     Setting{"same_layer_reach", &ClothSettings::same_layer_reach, 2, 1e3},
-    Setting{"min_gap_fraction", &ClothSettings::min_gap_fraction, 0, 1},
     Setting{"compliance_on_body", &ClothSettings::compliance_on_body, 1e-6, 1},
-    Setting{"parting_iterations", &ClothSettings::parting_iterations, 0, 1e4},
-    Setting{"joining_gap_fraction", &ClothSettings::joining_gap_fraction, 0, 1},
 };
 static_assert(setting_count<ClothSettings> == member_count<ClothSettings>(), "a setting is in no list");
 

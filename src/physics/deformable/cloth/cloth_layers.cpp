@@ -15,6 +15,7 @@ struct ClothLayers::Search {
     std::span<const Vec3> moves;
     double thickness = 0;
     double same_layer_reach = 0;  // m
+    bool takes_all = false;       // whose paths' boxes overlap, however near they come
 
     // Adds it if it may come nearer than twice the thickness.
     void add(LayerContact contact, Vec3 away, std::vector<LayerContact>& found) const {
@@ -85,7 +86,10 @@ void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
             const Vec3 a = nodes.position[q] - nodes.position[p], b = nodes.position[r] - nodes.position[p];
             const Vec3 a_displacement = search.moves[q] - search.moves[p],
                        b_displacement = search.moves[r] - search.moves[p];
-            leans_[t] = leans_of(cross(a, b)) & leans_of(cross(a + a_displacement, b + b_displacement));
+            // The normal on the way is a quadratic curve: it lies between these three (its Bernstein coefficients).
+            const Vec3 start = cross(a, b), end = cross(a + a_displacement, b + b_displacement);
+            const Vec3 middle = start + (cross(a, b_displacement) + cross(a_displacement, b)) / 2;
+            leans_[t] = leans_of(start) & leans_of(middle) & leans_of(end);
         }
     });
     patches_.update(triangle_boxes_, leans_);
@@ -96,6 +100,10 @@ void ClothLayers::search_node(const Search& search, std::uint32_t node, std::uin
     const std::vector<Vec3>& x = search.nodes.position;
     const auto [p, q, r] = triangles_[triangle];
     if (node == p || node == q || node == r || !overlaps(triangle_boxes_[triangle], node_boxes_[node])) return;
+    if (search.takes_all) {
+        found.push_back({ThinFeature::node_on_triangle, node, triangle, {node, p, q, r}, {}, {}, 0});
+        return;
+    }
     const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
     const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
     search.add({ThinFeature::node_on_triangle,
@@ -114,6 +122,10 @@ void ClothLayers::search_edges(const Search& search, std::uint32_t edge, std::ui
     const auto [a, b] = edges_[edge];
     const auto [c, d] = edges_[other];
     if (a == c || a == d || b == c || b == d) return;
+    if (search.takes_all) {
+        found.push_back({ThinFeature::edge_on_edge, edge, other, {a, b, c, d}, {}, {}, 0});
+        return;
+    }
     double s = 0, u = 0;
     if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
     const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
@@ -168,121 +180,25 @@ void ClothLayers::find(const Search& search, TaskPool& workers) {
     append(&Found::edges);
 }
 
-namespace {
-
-Vec3 displacement_of(const LayerContact& contact, std::span<const Vec3> moves) {
-    Vec3 displacement;
-    for (std::size_t k = 0; k < 4; ++k) displacement += contact.weight[k] * moves[contact.node[k]];
-    return displacement;
-}
-
-double compliance_of(const LayerContact& contact, std::span<const double> compliance) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) sum += contact.weight[k] * contact.weight[k] * compliance[contact.node[k]];
-    return sum;
-}
-
-void push(const LayerContact& contact, Vec3 by, std::span<const double> compliance, std::span<Vec3> moves) {
-    for (std::size_t k = 0; k < 4; ++k)
-        moves[contact.node[k]] += (contact.weight[k] * compliance[contact.node[k]]) * by;
-}
-
-// Where pushes did not separate them all: nodes that would pass through each other move together for this substep, with
-// the mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997). Nodes
-// that were joined may come to others. It ends: each pass but the last leaves fewer zones.
-void join(std::span<const LayerContact> contacts, const LayerParting& parting, std::span<Vec3> moves) {
-    const std::span<const double> compliance = parting.compliance;
-    const double min_fraction = parting.settings.joining_gap_fraction;
-    std::vector<std::uint32_t> zone(moves.size());
-    for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
-    const auto root_of = [&](std::uint32_t i) {
-        while (zone[i] != i) i = zone[i] = zone[zone[i]];
-        return i;
-    };
-    for (;;) {
-        bool has_joined = false;
-        for (const LayerContact& contact : contacts) {
-            const double end = contact.distance + dot(contact.normal, displacement_of(contact, moves));
-            if (end >= min_fraction * std::min(parting.thickness, contact.distance)) continue;
-            for (std::size_t k = 1; k < 4; ++k) {
-                const std::uint32_t a = root_of(contact.node[0]), b = root_of(contact.node[k]);
-                if (a == b) continue;
-                has_joined = true;
-                zone[std::max(a, b)] = std::min(a, b);
-            }
-        }
-        if (!has_joined) return;
-        std::vector<double> weight(moves.size(), 0);
-        std::vector<Vec3> sum(moves.size());
-        std::vector<bool> is_held(moves.size(), false), is_joined(moves.size(), false);
-        for (std::uint32_t i = 0; i < moves.size(); ++i) {
-            const std::uint32_t root = root_of(i);
-            if (root != i) is_joined[root] = true;
-            if (compliance[i] == 0) {
-                is_held[root] = true;
-                continue;
-            }
-            weight[root] += 1 / compliance[i];
-            sum[root] += (1 / compliance[i]) * moves[i];
-        }
-        for (std::uint32_t i = 0; i < moves.size(); ++i) {
-            const std::uint32_t root = root_of(i);
-            if (is_joined[root] && compliance[i] > 0) moves[i] = is_held[root] ? Vec3{} : sum[root] / weight[root];
-        }
-    }
-}
-
-}  // namespace
-
 std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
                                              const ClothSettings& settings, TaskPool& workers) {
     find({*this, nodes, moves, reach, settings.same_layer_reach * reach}, workers);
-    std::vector<ThinCandidate> candidates;
-    for (const LayerContact& contact : contacts_)
-        candidates.push_back({contact.kind, false, contact.first, contact.second});
+    std::vector<ThinCandidate> candidates = found();
     std::ranges::stable_sort(candidates, {}, [](const ThinCandidate& c) { return std::pair(c.kind, c.first); });
     return candidates;
 }
 
-double ClothLayers::max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
-                                     const ClothSettings& settings, TaskPool& workers) {
-    find({*this, nodes, moves, thickness, settings.same_layer_reach * thickness}, workers);
-    double longest = 0;
-    for (const LayerContact& contact : contacts_) longest = std::max(longest, length(displacement_of(contact, moves)));
-    return longest;
+std::vector<ThinCandidate> ClothLayers::meeting(const Nodes& nodes, std::span<const Vec3> moves, double margin,
+                                                TaskPool& workers) {
+    find({*this, nodes, moves, margin, 0, true}, workers);
+    return found();
 }
 
-void ClothLayers::part(const Nodes& nodes, const LayerParting& parting, std::span<Vec3> moves, TaskPool& workers) {
-    const double thickness = parting.thickness;
-    const std::span<const double> compliance = parting.compliance;
-    const int iterations = parting.settings.parting_iterations;
-    find({*this, nodes, moves, thickness, parting.settings.same_layer_reach * thickness}, workers);
-    std::vector<double> pushed(contacts_.size(), 0);  // m kg, so far
-    for (int iteration = 0; iteration < iterations; ++iteration) {
-        bool is_parted = true;
-        for (std::size_t c = 0; c < contacts_.size(); ++c) {
-            const LayerContact& contact = contacts_[c];
-            const double sum = compliance_of(contact, compliance), target = std::min(thickness, contact.distance);
-            const double distance = contact.distance + dot(contact.normal, displacement_of(contact, moves));
-            if (distance >= target || sum == 0) continue;
-            is_parted = false;
-            pushed[c] += (target - distance) / sum;
-            push(contact, ((target - distance) / sum) * contact.normal, compliance, moves);
-        }
-        if (is_parted) break;
-    }
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-        if (pushed[c] == 0) continue;
-        const LayerContact& contact = contacts_[c];
-        const Vec3 displacement = displacement_of(contact, moves),
-                   sliding = displacement - dot(displacement, contact.normal) * contact.normal;
-        const double size = length(sliding);
-        if (size == 0) continue;
-        push(contact,
-             (-std::min(parting.friction * pushed[c], size / compliance_of(contact, compliance)) / size) * sliding,
-             compliance, moves);
-    }
-    join(contacts_, parting, moves);
+std::vector<ThinCandidate> ClothLayers::found() const {
+    std::vector<ThinCandidate> candidates;
+    for (const LayerContact& contact : contacts_)
+        candidates.push_back({contact.kind, false, contact.first, contact.second});
+    return candidates;
 }
 
 }  // namespace embody::physics::deformable

@@ -27,38 +27,26 @@ struct LayerContact {
     double distance = 0;
 };
 
-/// How ClothLayers::part() keeps layers apart.
-struct LayerParting {
-    double thickness = 0;                ///< distance that they keep, m
-    double friction = 0;                 ///< Coulomb coefficient
-    std::span<const double> compliance;  ///< of the nodes, 1/kg; 0: none
-    ClothSettings settings = {};
-};
-
-/// Finds where a sheet may touch itself, and keeps its layers from going through each other.
+/// Finds where a sheet may touch itself.
 class ClothLayers {
 public:
     ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes);
 
-    /// Changes `moves` (m) so that features that would come closer than the thickness along the line between them stay
-    /// that far apart, or as close as they were; sliding is braked by friction. Momentum is kept. Contacts of features
-    /// that move by more than about half an edge against another layer in one substep may be missed.
-    void part(const Nodes& nodes, const LayerParting& parting, std::span<Vec3> moves, TaskPool& workers);
     /// Candidates that may come closer than twice `reach` (m) by these moves, in the order that PairSprings needs.
     [[nodiscard]] std::vector<ThinCandidate> near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
                                                   const ClothSettings& settings, TaskPool& workers);
-    /// Maximum relative displacement (m) of features that come close to each other by these moves.
-    [[nodiscard]] double max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
-                                          const ClothSettings& settings, TaskPool& workers);
+    /// All that may meet by these moves (m) and has no node in common, in no order. The same for any worker count.
+    [[nodiscard]] std::vector<ThinCandidate> meeting(const Nodes& nodes, std::span<const Vec3> moves, double margin,
+                                                     TaskPool& workers);
     /// Mean, m.
     [[nodiscard]] double edge_length() const { return edge_length_; }
     /// Each once.
     [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return edges_; }
-    /// Of the last call.
-    [[nodiscard]] std::span<const LayerContact> contacts() const { return contacts_; }
 
 private:
     struct Search;
+    // contacts_ as candidates.
+    [[nodiscard]] std::vector<ThinCandidate> found() const;
     void find(const Search& search, TaskPool& workers);
     void find_boxes(const Search& search, TaskPool& workers);
     void search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves, std::vector<LayerContact>& nodes,

@@ -240,44 +240,9 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
     });
 }
 
-bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers) {
-    const double h = substep.h;
-    inertias_ = inertias_of(bodies, h);
-    body_moves_.assign(bodies.size(), {});
-    moves_.resize(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
-    springs_.choose(moves_, body_moves_, true);
-    layer_springs_.choose(moves_, true);
-    iterations_ = solves_ = 0;
-    const int max_solves = substep.settings.cloth.max_solves;
-    std::vector<TouchSpring> all;
-    for (;;) {
-        all.assign(springs_.springs().begin(), springs_.springs().end());
-        all.insert(all.end(), layer_springs_.springs().begin(), layer_springs_.springs().end());
-        const int iterations = solver.solve(std::array{system()}, {}, all, inertias_, moves_, body_moves_, workers);
-        if (iterations == ClothSolver::not_finite) return false;
-        iterations_ += iterations;
-        ++solves_;
-        if (all.empty() || solves_ == max_solves) break;
-        // The last solve's springs stay as they were in it, so that bodies and nodes have the same force.
-        TouchSprings next = springs_;
-        PairSprings next_layers = layer_springs_;
-        const bool has_changed = next.choose(moves_, body_moves_, false);
-        if (!next_layers.choose(moves_, false) && !has_changed) break;
-        springs_ = std::move(next);
-        layer_springs_ = std::move(next_layers);
-    }
-    for (const Vec3 move : moves_) {
-        if (!is_finite(move)) return false;
-    }
-    for (const BodyMove& move : body_moves_) {
-        if (!is_finite(move.shift) || !is_finite(move.turn)) return false;
-    }
-    return true;
-}
-
 // Only while no external forces but weight, air, liquids and `given` act. `by_flow`: impulses, N s.
-void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow) {
+void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow,
+                               std::span<Vec3> moves) const {
     const double h = substep.h;
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
@@ -285,93 +250,27 @@ void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> giv
     for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
-            all[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
+            all[node] += dot(air_[t], h * winds_[t] - moves[node]) * air_[t];
     }
-    keep_momenta(nodes_, all, h, substep.settings.thin_contact, moves_);
+    keep_momenta(nodes_, all, h, substep.settings.thin_contact, moves);
 }
 
-// As for two sheets; here both are this one.
-void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
-    const double gravity = length(substep.gravity);
-    std::vector<Vec3> moves(nodes_.size());
-    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = substep.h * nodes_.mean_velocity[i];
-    ThinMember member;
-    member.surface = {.nodes = &nodes_,
-                      .triangles = cloth_.triangles,
-                      .edges = layers_->edges(),
-                      .radius = apart() / 2,
-                      .edge_length = layers_->edge_length()};
-    member.load.assign(nodes_.size(), 0);
-    layer_friction_ = friction_between(springs_.material, springs_.material, *substep.surface_pairs);
-    const ThinPair self{
-        0, 0, layer_friction_,
-        layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, substep.settings.cloth, workers)};
-    layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_,
-                         {substep.h, gravity, substep.settings.thin_contact});
-}
-
-// Separates what no spring kept apart in time; nodes on a body move last.
-void ClothSheet::part_layers(const ClothSettings& settings, TaskPool& workers) {
-    std::vector<double> compliance = nodes_.inverse_mass;
-    for (const TouchSpring& spring : springs_.springs()) {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
-            compliance[spring.node[k]] = settings.compliance_on_body * nodes_.inverse_mass[spring.node[k]];
-    }
-    const LayerParting parting{settings.min_gap_fraction * apart(), layer_friction_.sliding, compliance, settings};
-    layers_->part(nodes_, parting, moves_, workers);
-}
-
-// Layers are kept apart reliably where they pass each other by no more than half an edge: faster layers take more
-// parts.
-int ClothSheet::parts_of(double h, const ClothSettings& settings, TaskPool& workers) {
-    const double max_travel = settings.max_layer_travel * layers_->edge_length();
-    Vec3 mean;
-    double mass = 0, fastest = 0;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        mean += nodes_.mass[i] * nodes_.mean_velocity[i];
-        mass += nodes_.mass[i];
-    }
-    for (const Vec3 velocity : nodes_.mean_velocity) fastest = std::max(fastest, length(velocity - mean / mass));
-    if (h * fastest <= max_travel) return 1;
+std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskPool& workers) {
+    const double h = substep.h;
     moves_.resize(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
-    const double travel = layers_->max_displacement(nodes_, apart(), moves_, settings, workers);
-    return static_cast<int>(std::clamp(std::ceil(travel / max_travel), 1.0, static_cast<double>(settings.max_parts)));
-}
-
-void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
-                         std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
-                         std::span<TouchedBody> bodies, TaskPool& workers) {
-    const PartPushes pushes(bodies);
-    if (is_frozen_) return;
-    const int parts = parts_of(substep.h, substep.settings.cloth, workers);
-    int iterations = 0, solves = 0;
-    for (int part = 0; part < parts; ++part) {
-        Substep own = substep;
-        own.h = substep.h / parts;
-        own.time = substep.time + part * own.h;
-        if (part > 0) pushes.go_on(bodies, own.h);
-        begin(own, contacts, between, attachment_bodies, bodies, workers);
-        if (!solve_moves(own, bodies, workers)) return freeze();
-        end(own, moves_, body_moves_, {}, bodies, workers);
-        iterations += iterations_;
-        solves += solves_;
-    }
-    iterations_ = iterations;
-    solves_ = solves;
+    for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    return layers_->near(nodes_, apart() + length(substep.gravity) * h * h, moves_, substep.settings.cloth, workers);
 }
 
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
                        std::span<const TouchedBody> bodies, TaskPool& workers) {
-    solver.set(substep.settings.cloth);
     springs_.tolerance = substep.settings.thin_contact.change_tolerance;
     find_strains(substep, workers);
     fill_rows(substep, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
-    find_layers(substep, workers);
 }
 
 void ClothSheet::freeze() {
@@ -379,21 +278,20 @@ void ClothSheet::freeze() {
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
 }
 
-void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-                     std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers) {
-    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
+void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
+                        std::span<const Vec3> given, std::span<TouchedBody> bodies) {
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
-    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves_, substep);
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
-        keep_momentum(substep, given, by_flow);
-    std::vector<Vec3> within(nodes_.size());  // forces that the moves include already
-    layer_springs_.finish(moves_, within, layer_contacts_);
-    springs_.finish(moves_, body_moves, substep, bodies);
-    part_layers(substep.settings.cloth, workers);
-    set_velocities(nodes_, moves_, substep.h);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves_[i];
+        keep_momentum(substep, given, by_flow, moves);
+    springs_.finish(moves, body_moves, substep, bodies);
+}
+
+void ClothSheet::move_nodes(std::span<const Vec3> moves, double h) {
+    set_velocities(nodes_, moves, h);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves[i];
 }
 
 double ClothSheet::elastic_energy() const {

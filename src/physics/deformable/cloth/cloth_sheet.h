@@ -9,7 +9,6 @@
 #include "physics/deformable/cloth/cloth_mesh.h"
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/contact/nodes.h"
-#include "physics/deformable/contact/pair_springs.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
 
@@ -22,29 +21,25 @@ public:
     /// `definition` is valid and its matter is cloth.
     explicit ClothSheet(const DeformableDefinition& definition);
 
-    /// One substep, in parts where layers of it move fast. `attachment_bodies`: where the attachments hold in `bodies`.
-    /// Pushes the bodies.
-    void advance(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
-                 std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
-
-    // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
-    /// How many parts the substep takes.
-    [[nodiscard]] int parts_of(double h, const ClothSettings& settings, TaskPool& workers);
-    /// Finds system(), touch() and layers() for the part.
+    // A substep: sheets and ropes that touch each other are solved together (docs/physics/cloth.md).
+    /// Finds system() and touch() for the part. `attachment_bodies`: where the attachments hold in `bodies`.
     void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
     /// The sheet's equations for the solve, valid until the next begin().
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
-    /// Where the sheet touches itself.
-    [[nodiscard]] PairSprings& layers() { return layer_springs_; }
+    [[nodiscard]] ClothLayers& layers() { return *layers_; }
+    /// Where it may touch itself in the part, by the motion of its nodes.
+    [[nodiscard]] std::vector<ThinCandidate> near_layers(const Substep& substep, TaskPool& workers);
     /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
-    /// Moves the nodes by these moves, which touch() and layers() were solved with. `given`: forces on the nodes
-    /// besides, N; none or one a node. Pushes the bodies.
-    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-             std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers);
+    /// Ends it with these moves (m), which touch() was solved with, and changes them where the solve could not know.
+    /// `given`: forces on the nodes besides, N; none or one a node. Pushes the bodies.
+    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
+                std::span<const Vec3> given, std::span<TouchedBody> bodies);
+    /// Moves the nodes by these moves (m) in h seconds.
+    void move_nodes(std::span<const Vec3> moves, double h);
     /// Stops it for good where it is.
     void freeze();
     /// Each edge of its triangles once.
@@ -60,20 +55,12 @@ public:
     /// Present energies, J. Contacts are taken over from another sheet of as many nodes.
     void go_on_from(const ClothSheet& other) {
         springs_.go_on_from(other.springs_);
-        layer_contacts_ = other.layer_contacts_;
     }
     [[nodiscard]] double elastic_energy() const;
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
-    /// Where it touched itself in the last substep.
-    [[nodiscard]] const ThinContacts& layer_contacts() const { return layer_contacts_; }
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
-    /// Iterations of conjugate gradients in the last substep, and solves.
-    [[nodiscard]] int iterations() const { return iterations_; }
-    [[nodiscard]] int solves() const { return solves_; }
-
-    ClothSolver solver;
 
 private:
     // Position of a triangle's elements in a node's row of the matrix.
@@ -94,10 +81,8 @@ private:
     void find_strains(const Substep& substep, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
-    bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
-    void keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow);
-    void find_layers(const Substep& substep, TaskPool& workers);
-    void part_layers(const ClothSettings& settings, TaskPool& workers);
+    void keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow,
+                       std::span<Vec3> moves) const;
     // Distance of layers: as if a body of no thickness lay between them.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 
@@ -112,19 +97,13 @@ private:
     std::vector<std::uint32_t> far_element_;  // of bending_'s elements: the index of each among the row's far elements
     TouchSprings springs_;
     std::optional<ClothLayers> layers_;
-    PairFriction layer_friction_;  // of the sheet with itself
-    PairSprings layer_springs_;
-    ThinContacts layer_contacts_;  // their memory of the last substep
     std::vector<std::uint8_t> fixed_;
 
     // Of the substep.
     std::vector<Strain> strains_;
     std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
     std::vector<double> node_stiffness_;
-    std::vector<BodyInertia> inertias_;
-    std::vector<BodyMove> body_moves_;
     bool is_frozen_ = false;
-    int iterations_ = 0, solves_ = 0;
 };
 
 }  // namespace embody::physics::deformable

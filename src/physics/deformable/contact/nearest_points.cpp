@@ -44,4 +44,17 @@ bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {
     return s > 0 && s < 1 && t > 0 && t < 1;
 }
 
+// C. Ericson, Real-Time Collision Detection, 5.1.9: the lines' nearest points, or an end and what is nearest to it.
+std::array<double, 2> nearest_between(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const Vec3 u = b - a, v = d - c, w = a - c;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
+    const double spread = uu * vv - uv * uv;
+    double s = spread > 0 ? std::clamp((uv * vw - vv * uw) / spread, 0.0, 1.0) : 0;
+    double t = vv > 0 ? (uv * s + vw) / vv : 0;
+    if (t >= 0 && t <= 1) return {s, t};
+    t = std::clamp(t, 0.0, 1.0);
+    s = uu > 0 ? std::clamp((uv * t - uw) / uu, 0.0, 1.0) : 0;
+    return {s, t};
+}
+
 }  // namespace embody::physics::deformable

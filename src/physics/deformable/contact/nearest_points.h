@@ -18,4 +18,7 @@ double nearest_along(Vec3 p, Vec3 a, Vec3 b);
 /// are parallel.
 bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t);
 
+/// Where on the segments ab and cd the points nearest to each other lie, 0 … 1 each.
+std::array<double, 2> nearest_between(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+
 }  // namespace embody::physics::deformable

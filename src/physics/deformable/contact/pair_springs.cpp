@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace embody::physics::deformable {
 
@@ -36,6 +37,7 @@ struct PairSprings::Search {
     [[nodiscard]] bool is_next_to(const ThinContact& memory, const ThinCandidate& candidate) const;
     void recall(Found& found) const;
     [[nodiscard]] bool is_near(const Found& found) const;
+    void add_known(std::vector<Found>& kept) const;
     void add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const;
     [[nodiscard]] bool is_held(const Found& edges, std::span<const Vec3> held_a, std::span<const Vec3> held_b) const;
 };
@@ -125,6 +127,26 @@ void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std:
     }
 }
 
+// Contacts that pushed in the last substep and are not among those found, as between edges that meet at their ends:
+// what held them apart goes on.
+void PairSprings::Search::add_known(std::vector<Found>& kept) const {
+    const auto features = [](const auto& contact) {
+        return std::tuple(contact.kind, contact.is_swapped, contact.first, contact.second);
+    };
+    std::vector<decltype(features(ThinCandidate{}))> found;
+    for (const Found& own : kept) found.push_back(features(own.candidate));
+    std::ranges::sort(found);
+    for (const ThinContact& known : memory) {
+        if (!(known.push > 0) || std::ranges::binary_search(found, features(known))) continue;
+        const ThinCandidate candidate{known.kind, known.is_swapped, known.first, known.second};
+        Found own{.candidate = candidate, .points = nearest_points(a.surface, b.surface, candidate), .normal = {}};
+        own.distance = length(own.points.away);
+        own.normal = normalized(own.points.away);
+        own.memory = &known;
+        if (dot(own.normal, known.normal) > start.settings.same_normal_cosine && is_near(own)) kept.push_back(own);
+    }
+}
+
 // Of two sheets: whether both ends of either edge touch the other sheet from the same side.
 bool PairSprings::Search::is_held(const Found& edges, std::span<const Vec3> held_a,
                                   std::span<const Vec3> held_b) const {
@@ -138,7 +160,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     const ThinContactSettings& settings = search.start.settings;
     const double h = search.start.h;
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
-    std::array<double, 2> mass{};
+    std::array<double, 2> mass{}, own_stiffness{};
     const bool is_self = &search.a == &search.b;
     Vec3 place;
     double compliance = 0, load = found.memory != nullptr && !is_self ? found.memory->carried : 0;
@@ -150,8 +172,9 @@ void PairSprings::add(const Search& search, const Found& found) {
         const std::size_t side = k < found.points.count_first ? 0 : 1;
         if (side == 0) place += weight * member.surface.nodes->position[node];
         mass[side] += std::fabs(weight) * member.surface.nodes->mass[node];
+        own_stiffness[side] += std::fabs(weight) * member.stiffness[node];
         compliance += weight * weight * member.surface.nodes->inverse_mass[node];
-        if (std::fabs(weight) > settings.min_load_weight) load = std::max(load, member.load[node]);
+        if (!is_self && std::fabs(weight) > settings.min_load_weight) load = std::max(load, member.load[node]);
         spring.node[at] = member.first + node;
     }
     if (compliance == 0) return;
@@ -159,14 +182,17 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
+    // Squeezed layers: the deeper, the nearer to the stiffness of what squeezes them.
+    if (gap < 0) {
+        const double depth = std::min(-gap / search.radius, settings.max_stiff_depth);
+        const double stiffness = std::min(own_stiffness[0], own_stiffness[1]);
+        spring.stiffness = std::max(spring.stiffness, settings.depth_stiffness_factor * stiffness * depth / (1 - depth));
+    }
     if (gap < 0) spring.returned = std::min(-settings.recovery_fraction * gap, settings.recovery_speed * h);
     spring.gap = gap < 0 ? -spring.returned : gap;
     spring.friction = search.friction;
     if (found.memory != nullptr) {
-        // Layers that something holds in each other must not push harder and harder: the deeper they are, the more
-        // force they forget.
-        const double kept = is_self ? std::clamp(1 + gap / (settings.memory_depth * search.radius), 0.0, 1.0) : 1;
-        spring.pull = kept * found.memory->push * found.normal;
+        spring.pull = found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);
         spring.sticks = found.memory->sticks;
     }
@@ -176,7 +202,7 @@ void PairSprings::add(const Search& search, const Found& found) {
                          found.candidate.first,
                          found.candidate.second,
                          found.normal,
-                         0,
+                         found.memory != nullptr ? found.memory->push : 0,
                          {},
                          true,
                          spring.stiffness,
@@ -189,12 +215,13 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
                         const ThinContacts& memories, const Start& start) {
     springs_.clear();
     features_.clear();
-    last_of_.clear();
+    pair_.clear();
+    slots_.clear();
     start_ = start;
     std::vector<Found> kept;
     for (const ThinPair& pair : pairs) {
         const ThinMember &a = members[pair.a], &b = members[pair.b];
-        const Slots slots{a.slot, b.slot};
+        const Slots slots = slots_.emplace_back(a.slot, b.slot);
         const auto known = memories.find(slots);
         const Search search{a,
                             b,
@@ -226,8 +253,35 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
                     kept.push_back(found);
             }
         }
+        search.add_known(kept);
         for (const Found& found : kept) add(search, found);
-        last_of_.emplace_back(slots, springs_.size());
+        pair_.resize(springs_.size(), static_cast<std::uint32_t>(slots_.size() - 1));
+    }
+}
+
+void PairSprings::add(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
+                      std::span<const ThinMeeting> meetings, std::span<const Vec3> moves) {
+    const std::size_t before = springs_.size();
+    for (const ThinMeeting& meeting : meetings) {
+        const ThinCandidate& candidate = meeting.candidate;
+        bool is_known = false;
+        for (std::size_t i = 0; i < before; ++i) {
+            const ThinContact& own = features_[i];
+            if (pair_[i] != meeting.pair || own.kind != candidate.kind || own.is_swapped != candidate.is_swapped ||
+                own.first != candidate.first || own.second != candidate.second ||
+                dot(own.normal, meeting.normal) < start_.settings.same_normal_cosine)
+                continue;
+            TouchSpring& spring = springs_[i];
+            const double push = dot(spring.force(spring.lead(moves, {})), spring.normal);
+            if (spring.acts) spring.pull = std::max(push, 0.0) * spring.normal;
+            is_known = true;
+        }
+        if (is_known) continue;
+        const ThinPair& pair = pairs[meeting.pair];
+        const ThinMember &a = members[pair.a], &b = members[pair.b];
+        add({a, b, {}, start_, a.surface.radius + b.surface.radius, pair.friction},
+            {candidate, meeting.points, meeting.normal, dot(meeting.points.away, meeting.normal)});
+        pair_.resize(springs_.size(), meeting.pair);
     }
 }
 
@@ -239,27 +293,26 @@ bool PairSprings::choose(std::span<const Vec3> moves, bool is_predicted) {
 
 void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories) {
     const double gravity = std::max(start_.gravity, start_.settings.min_gravity);
-    std::size_t i = 0;
-    for (const auto& [slots, last] : last_of_) {
-        std::vector<ThinContact>& memory = memories[slots];
-        memory.clear();
-        for (; i < last; ++i) {
-            TouchSpring& spring = springs_[i];
-            ThinContact& own = memory.emplace_back(features_[i]);
-            if (!spring.acts) continue;
-            const Vec3 s = spring.lead(moves, {});
-            const Vec3 force = spring.force(s);
-            const double push = std::max(0.0, dot(force, spring.normal));
-            own.force = force;
-            own.push = kept_push(spring, push);
-            own.carried = std::max(own.push / gravity, start_.settings.load_memory * own.carried);
-            own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
-            own.sticks = spring.sticks;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                given[spring.node[k]] += spring.weight[k] * force;
-        }
-        std::ranges::stable_sort(memory, {}, &ThinContact::key);
+    for (const Slots& slots : slots_) memories[slots].clear();
+    for (std::size_t i = 0; i < springs_.size(); ++i) {
+        TouchSpring& spring = springs_[i];
+        ThinContact& own = memories[slots_[pair_[i]]].emplace_back(features_[i]);
+        const double before = std::exchange(own.push, 0);
+        if (!spring.acts) continue;
+        const Vec3 s = spring.lead(moves, {});
+        const Vec3 force = spring.force(s);
+        const double push = std::max(0.0, dot(force, spring.normal));
+        own.force = force;
+        own.push = kept_push(spring, push);
+        // What stops a fast thing is no load: a load stays.
+        own.carried = std::max(std::min(own.push, before) / gravity, start_.settings.load_memory * own.carried);
+        own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
+        own.sticks = spring.sticks;
+        if (slots_[pair_[i]].first == slots_[pair_[i]].second) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+            given[spring.node[k]] += spring.weight[k] * force;
     }
+    for (const Slots& slots : slots_) std::ranges::stable_sort(memories[slots], {}, &ThinContact::key);
 }
 
 }  // namespace embody::physics::deformable

@@ -36,12 +36,21 @@ struct ThinMember {
     std::uint32_t slot = 0;
     std::uint32_t first = 0;   ///< number of its first node among those of all
     std::vector<double> load;  ///< kg a node: of bodies that lie on it
+    std::span<const double> stiffness;  ///< N/m a node, of it alone
 };
 /// Two members, by index, the lower slot first, with their candidates; or a sheet with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;
     std::vector<ThinCandidate> candidates;
+};
+
+/// Two features that would meet within a substep.
+struct ThinMeeting {
+    std::uint32_t pair = 0;  ///< of those that are solved together
+    ThinCandidate candidate;
+    ThinPoints points;  ///< nearest when they meet; `away`: of these when the substep began
+    Vec3 normal;        ///< from the second to the first when they meet, unit
 };
 
 /// Contacts between sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like those
@@ -56,9 +65,13 @@ public:
     /// Begins a substep.
     void begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs, const ThinContacts& memories,
                const Start& start);
+    /// Adds a contact for each of these, along its normal; one that was added before gets the force that it had in the
+    /// last solve, with these moves, to begin with (the method of multipliers). `members` and `pairs` as in begin().
+    void add(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
+             std::span<const ThinMeeting> meetings, std::span<const Vec3> moves);
     /// As TouchSprings::choose(), for moves of all nodes.
     bool choose(std::span<const Vec3> moves, bool is_predicted);
-    /// Adds the forces of the springs to `given` (N), by node, and remembers.
+    /// Adds the forces of the springs between different members to `given` (N), by node, and remembers all.
     void finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
@@ -70,8 +83,9 @@ private:
 
     Start start_;
     std::vector<TouchSpring> springs_;
-    std::vector<ThinContact> features_;                   // of the springs: only what they connect, without forces
-    std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring
+    std::vector<ThinContact> features_;  // of the springs: only what they connect, without forces
+    std::vector<std::uint32_t> pair_;    // of the springs
+    std::vector<Slots> slots_;           // of the pairs
 };
 
 }  // namespace embody::physics::deformable

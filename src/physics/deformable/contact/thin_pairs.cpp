@@ -20,11 +20,11 @@ struct SweptFeatures {
 class Sweep {
 public:
     // `motion`: of the whole, left out: features that move together do not meet. `margin`: around each node, m.
-    Sweep(const ThinSurface& surface, Vec3 motion, double time_step, double margin) : surface_(surface) {
+    Sweep(const ThinSurface& surface, std::span<const Vec3> moves, Vec3 motion, double margin) : surface_(surface) {
         const Nodes& nodes = *surface.nodes;
         boxes_.reserve(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const Vec3 start = nodes.position[i], end = start + time_step * (nodes.mean_velocity[i] - motion);
+            const Vec3 start = nodes.position[i], end = start + moves[i] - motion;
             boxes_.push_back(enlarged(Bounds{min(start, end), max(start, end)}, margin));
             bounds_.add(boxes_.back());
         }
@@ -83,18 +83,25 @@ void match(const SweptFeatures& first, const SweptFeatures& second, ThinFeature 
 
 }  // namespace
 
-void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
-                          TaskPool& workers, std::vector<ThinCandidate>& candidates) {
+void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, const ThinSurface& b,
+                           std::span<const Vec3> moves_b, double reach, TaskPool& workers,
+                           std::vector<ThinCandidate>& candidates) {
     Vec3 motion;
-    for (const Vec3 velocity : a.nodes->mean_velocity)
-        motion += velocity / static_cast<double>(a.nodes->mean_velocity.size());
-    const double margin = (a.radius + b.radius) / 2 + gravity * time_step * time_step;
-    const Sweep sweep_a(a, motion, time_step, margin), sweep_b(b, motion, time_step, margin);
+    for (const Vec3 move : moves_a) motion += move / static_cast<double>(moves_a.size());
+    const Sweep sweep_a(a, moves_a, motion, reach / 2), sweep_b(b, moves_b, motion, reach / 2);
     const Bounds region{max(sweep_a.bounds().lower, sweep_b.bounds().lower),
                         min(sweep_a.bounds().upper, sweep_b.bounds().upper)};
     if (region.is_empty()) return;
-    const SweptFeatures nodes_a = sweep_a.nodes_in(region), nodes_b = sweep_b.nodes_in(region);
     const SweptFeatures edges_a = sweep_a.joined_in(a.edges, region), edges_b = sweep_b.joined_in(b.edges, region);
+    if (a.nodes == b.nodes) {
+        const std::size_t first = candidates.size();
+        match(edges_a, edges_b, ThinFeature::edge_on_edge, false, workers, candidates);
+        const auto follow = [](const ThinCandidate& candidate) { return candidate.second <= candidate.first + 1; };
+        candidates.erase(std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), follow),
+                         candidates.end());
+        return;
+    }
+    const SweptFeatures nodes_a = sweep_a.nodes_in(region), nodes_b = sweep_b.nodes_in(region);
     if (!b.triangles.empty())
         match(nodes_a, sweep_b.joined_in(b.triangles, region), ThinFeature::node_on_triangle, false, workers,
               candidates);
@@ -107,9 +114,21 @@ void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double tim
     match(edges_a, edges_b, ThinFeature::edge_on_edge, false, workers, candidates);
 }
 
-bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points) {
+void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
+                          TaskPool& workers, std::vector<ThinCandidate>& candidates) {
+    const auto moves_of = [&](const ThinSurface& surface) {
+        std::vector<Vec3> moves;
+        for (const Vec3 velocity : surface.nodes->mean_velocity) moves.push_back(time_step * velocity);
+        return moves;
+    };
+    const double reach = a.radius + b.radius + 2 * gravity * time_step * time_step;
+    find_swept_candidates(a, moves_of(a), b, moves_of(b), reach, workers, candidates);
+}
+
+ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate) {
     const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
     const std::vector<Vec3>&x = first.nodes->position, &y = second.nodes->position;
+    ThinPoints points;
     if (candidate.kind == ThinFeature::node_on_triangle) {
         const auto [p, q, r] = second.triangles[candidate.second];
         const auto w = nearest_weights(x[candidate.first], y[p], y[q], y[r]);
@@ -121,14 +140,26 @@ bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate
     } else {
         const auto [p, q] = first.edges[candidate.first];
         const auto [r, s] = second.edges[candidate.second];
-        double t = 0, u = 0;
-        if (!nearest_inside(x[p], x[q], y[r], y[s], t, u)) return false;
+        const auto [t, u] = nearest_between(x[p], x[q], y[r], y[s]);
         points = {{p, q, r, s}, {1 - t, t, u - 1, -u}, 2, 4, {}};
     }
     for (int k = 0; k < points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         points.away += points.weight[at] * (k < points.count_first ? x : y)[points.node[at]];
     }
+    return points;
+}
+
+bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points) {
+    if (candidate.kind == ThinFeature::edge_on_edge) {
+        const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
+        const std::vector<Vec3>&x = first.nodes->position, &y = second.nodes->position;
+        const auto [p, q] = first.edges[candidate.first];
+        const auto [r, s] = second.edges[candidate.second];
+        double t = 0, u = 0;
+        if (!nearest_inside(x[p], x[q], y[r], y[s], t, u)) return false;
+    }
+    points = nearest_points(a, b, candidate);
     return true;
 }
 

@@ -36,6 +36,12 @@ struct ThinCandidate {
 void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
                           TaskPool& workers, std::vector<ThinCandidate>& candidates);
 
+/// The same for features that may come closer than `reach` (m) by these moves of the nodes, one each, m. `a` and `b` may
+/// be one rope: then its segments that do not follow each other.
+void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, const ThinSurface& b,
+                           std::span<const Vec3> moves_b, double reach, TaskPool& workers,
+                           std::vector<ThinCandidate>& candidates);
+
 /// The nearest points of two features: Σ weight x is the vector from the second to the first.
 struct ThinPoints {
     std::array<std::uint32_t, 4> node{};  ///< the first `count_first` of the first feature's surface
@@ -44,8 +50,11 @@ struct ThinPoints {
     Vec3 away;  ///< m
 };
 
-/// Of a candidate as its nodes lie now; nothing where the nearest points of two edges are at an end.
+/// Of a candidate as its nodes lie now; false where the nearest points of two edges are at an end.
 bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points);
+
+/// The same, of edges too that are nearest at an end.
+ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate);
 
 /// Whether any of these is going to touch within `time_step` (s) by its velocity, or nearly does.
 bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,

@@ -364,20 +364,20 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     std::vector<double> fractions;
     if (!clamps_.holds_any())
         fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
-    end(substep, moves_, body_moves_, {}, bodies, fractions);
+    finish(substep, moves_, body_moves_, {}, bodies, fractions);
+    move_nodes(moves_, substep.h);
 }
 
-void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-                   std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions) {
+void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
+                      std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions) {
     new_breaks_.clear();
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
-    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
     const bool is_free = std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
                          std::ranges::none_of(springs_.springs(), acts);
-    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves_, substep);
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     if (is_whole && is_free) {
         std::vector<Vec3> all(count);
@@ -385,16 +385,19 @@ void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::spa
             all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
         for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
         for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
-        keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves_);
+        keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves);
     }
     held_.clear();
-    springs_.finish(moves_, body_moves, substep, bodies, fractions);
-    if (clamps_.holds_any()) {
-        for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
-        clamps_.finish(places_, body_moves, substep.h, bodies);
-    }
-    set_velocities(nodes_, moves_, substep.h);
-    for (std::size_t i = 0; i < count; ++i) nodes_.position[i] += moves_[i];
+    springs_.finish(moves, body_moves, substep, bodies, fractions);
+    if (!clamps_.holds_any()) return;
+    for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves[i];
+    clamps_.finish(places_, body_moves, substep.h, bodies);
+}
+
+void RopeLine::move_nodes(std::span<const Vec3> moves, double h) {
+    if (is_frozen_) return;
+    set_velocities(nodes_, moves, h);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves[i];
     break_segments();
 }
 

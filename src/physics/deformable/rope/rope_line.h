@@ -36,10 +36,13 @@ public:
     /// Sets the tensions of its segments for a solve about the moves `from` with the solution `to`: for the next
     /// linearize().
     void predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
-    /// Moves the nodes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or
-    /// one a node. Pushes the bodies; `fractions` as of TouchSprings::finish().
-    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-             std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions);
+    /// Ends the substep with these moves (m), which touch() was solved with, and changes them where the solve could not
+    /// know. `given`: forces on the nodes besides, N; none or one a node. Pushes the bodies; `fractions` as of
+    /// TouchSprings::finish().
+    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
+                std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions);
+    /// Moves the nodes by these moves (m) in h seconds; a segment may break.
+    void move_nodes(std::span<const Vec3> moves, double h);
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] bool has_clamps() const { return clamps_.holds_any(); }
     /// Length of the first segment at rest, m.

@@ -319,6 +319,7 @@ void keep_contacts(const DeformableAccess& world, MovingDeformables& moving) {
         }
     }
     for (const auto& [slots, contacts] : world.deformables.thin_contacts) {
+        if (slots.first == slots.second) continue;
         if (world.deformables.records.at(slots.first).is_asleep) continue;  // it keeps what it touched
         if (std::ranges::none_of(contacts, [](const ThinContact& contact) { return contact.push > 0; })) continue;
         world.deformables.records.at(slots.first).touched_deformables.push_back(slots.second);

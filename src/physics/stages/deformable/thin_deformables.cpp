@@ -79,16 +79,11 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
         find_sheet_contacts(bodies, may_collide, settings, thin, workers);
 }
 
-void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {
-    DeformableRecord& record = *thin.record;
-    if (record.cloth()) {
-        record.cloth()->set_attachments(thin.attachments);
-        record.cloth()->advance(substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies, workers);
-    } else {
-        record.rope()->set_attachments(thin.attachments);
-        record.rope()->set_clamps(record.definition.clamps);
-        record.rope()->advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
-    }
+void advance_rope(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies) {
+    RopeLine& rope = *thin.record->rope();
+    rope.set_attachments(thin.attachments);
+    rope.set_clamps(thin.record->definition.clamps);
+    rope.advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
 }
 
 std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std::span<const TouchedBody> bodies) {

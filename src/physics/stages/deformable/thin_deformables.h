@@ -26,8 +26,8 @@ struct ThinDeformable {
 /// Contacts that it may have in a step of these settings. `may_collide`: for each of `bodies`, those of the step.
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
                         const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers);
-/// One substep of it; pushes the bodies.
-void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers);
+/// One substep of a rope by itself; pushes the bodies.
+void advance_rope(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies);
 /// Its contacts and attachments in the last substep.
 std::span<const TouchSpring> springs_of(const DeformableRecord& record);
 /// Slots of the bodies that it pushed in the last substep, ascending.

@@ -79,7 +79,8 @@ ThinGroupPart::ThinGroupPart(const DeformableAccess& world, const ThinGroup& gro
     }
 }
 
-void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) {
+void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies) {
+    seen_.resize(members_.size());
     for (std::size_t m = 0; m < members_.size(); ++m) {
         Member& member = members_[m];
         const ThinDeformable& thin = *member.thin;
@@ -89,20 +90,20 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
             record.cloth()->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
                                   world_.workers);
             member.touch = record.cloth()->touch();
-            member.layers = record.cloth()->layers();
         } else {
             record.rope()->set_attachments(thin.attachments);
             record.rope()->set_clamps(record.definition.clamps);
             record.rope()->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
             member.touch = record.rope()->touch();
         }
-        seen[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
-                   std::vector<double>(member.count, 0)};
+        seen_[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
+                   std::vector<double>(member.count, 0),
+                   record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness()};
     }
 }
 
 // Weight of bodies on each node, as if evenly spread over all nodes that they may touch.
-void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const {
+void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies) {
     std::vector<double> touched(bodies.size(), 0);
     const auto bears = [&](const TouchSpring& spring) {
         return !spring.is_attachment && spring.body < bodies.size() && bodies[spring.body].inverse_mass > 0;
@@ -117,22 +118,26 @@ void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies, std::span<Th
             if (!bears(spring)) continue;
             const double load = 1 / (bodies[spring.body].inverse_mass * touched[spring.body]);
             for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                seen[m].load[spring.node[k]] = std::max(seen[m].load[spring.node[k]], load);
+                seen_[m].load[spring.node[k]] = std::max(seen_[m].load[spring.node[k]], load);
         }
     }
 }
 
-void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
+void ThinGroupPart::begin_pairs() {
     const double gravity = length(world_.settings.gravity);
     double pull = gravity;  // the strongest
     for (const Member& member : members_) pull = std::max(pull, length(member.substep.gravity));
-    std::vector<ThinPair> pairs = group_.pairs;
-    for (ThinPair& pair : pairs) {
+    met_ = group_.pairs;
+    for (ThinPair& pair : met_) {
         pair.a = place_[pair.a];
         pair.b = place_[pair.b];
+        const Member& member = members_[pair.a];
+        ClothSheet* sheet = pair.a == pair.b ? member.record().cloth() : nullptr;
+        if (sheet != nullptr) pair.candidates = sheet->near_layers(member.substep, world_.workers);
+        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
-    pairs_.begin(seen, pairs, world_.deformables.thin_contacts, {h_, pull, settings});
+    pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, settings});
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -146,14 +151,10 @@ void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
 
 void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     body_moves_.assign(bodies.size(), {});
-    std::vector<ThinMember> seen(members_.size());
-    begin_members(bodies, seen);
-    load_nodes(bodies, seen);
-    begin_pairs(seen);
-    for (Member& member : members_) {
-        member.touch.choose(part(moves_, member), body_moves_, true);
-        member.layers.choose(part(moves_, member), true);
-    }
+    begin_members(bodies);
+    load_nodes(bodies);
+    begin_pairs();
+    for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, true);
     pairs_.choose(moves_, true);
     // Starts from rest or from inertia, whichever is closer to the solution, as RopeLine does.
     for (const Member& member : ropes()) {
@@ -168,12 +169,10 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
 void ThinGroupPart::gather_springs() {
     springs_.clear();
     for (const Member& member : members_) {
-        for (const std::span<const TouchSpring> springs : {member.touch.springs(), member.layers.springs()}) {
-            for (TouchSpring spring : springs) {
-                for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                    spring.node[k] += static_cast<std::uint32_t>(member.first);
-                springs_.push_back(spring);
-            }
+        for (TouchSpring spring : member.touch.springs()) {
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                spring.node[k] += static_cast<std::uint32_t>(member.first);
+            springs_.push_back(spring);
         }
     }
     springs_.insert(springs_.end(), pairs_.springs().begin(), pairs_.springs().end());
@@ -185,22 +184,54 @@ void ThinGroupPart::gather_springs() {
 bool ThinGroupPart::choose_again() {
     bool has_changed = false;
     std::vector<TouchSprings> touch;
-    std::vector<PairSprings> layers;
     for (const Member& member : members_) {
         touch.push_back(member.touch);
-        layers.push_back(member.layers);
         has_changed |= touch.back().choose(part(moves_, member), body_moves_, false);
-        has_changed |= layers.back().choose(part(moves_, member), false);
     }
     PairSprings pairs = pairs_;
     has_changed |= pairs.choose(moves_, false);
     if (!has_changed) return false;
-    for (std::size_t m = 0; m < members_.size(); ++m) {
-        members_[m].touch = std::move(touch[m]);
-        members_[m].layers = std::move(layers[m]);
-    }
+    for (std::size_t m = 0; m < members_.size(); ++m) members_[m].touch = std::move(touch[m]);
     pairs_ = std::move(pairs);
     return true;
+}
+
+// Contacts for one more solve of what would pass through each other by the solved moves.
+void ThinGroupPart::add_contacts(std::span<const ThinMeeting> meetings) {
+    pairs_.add(seen_, met_, meetings, moves_);
+    for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, false);
+    pairs_.choose(moves_, false);
+}
+
+// A contact holds the features that meet along one normal: they must not go far past each other.
+bool ThinGroupPart::is_too_fast(const ThinMeeting& meeting) const {
+    const auto& [a, b, layers] = guarded_[meeting.pair];
+    const ThinMember &first = seen_[meeting.candidate.is_swapped ? b : a],
+                     &second = seen_[meeting.candidate.is_swapped ? a : b];
+    const double edge = std::min(first.surface.edge_length, second.surface.edge_length);
+    Vec3 passed;
+    for (int k = 0; k < meeting.points.count; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        const ThinMember& own = k < meeting.points.count_first ? first : second;
+        passed += meeting.points.weight[at] * moves_[own.first + meeting.points.node[at]];
+    }
+    return length(passed) > world_.settings.solver.deformable.cloth.max_layer_travel * edge;
+}
+
+// Of the nodes, 1/kg, for what the guard must hold: those on a body move last.
+std::vector<double> ThinGroupPart::compliances() const {
+    std::vector<double> compliances;
+    for (const Member& member : members_) {
+        const std::vector<double>& own = member.record().nodes().inverse_mass;
+        compliances.insert(compliances.end(), own.begin(), own.end());
+        for (const TouchSpring& spring : member.touch.springs()) {
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k) {
+                compliances[member.first + spring.node[k]] =
+                    world_.settings.solver.deformable.cloth.compliance_on_body * own[spring.node[k]];
+            }
+        }
+    }
+    return compliances;
 }
 
 // The function that the solves minimise: inertia, elastic energy, damping and springs of the moves, J.
@@ -239,8 +270,14 @@ double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, 
     return travel;
 }
 
+bool ThinGroupPart::are_finite() const {
+    return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
+           std::ranges::all_of(body_moves_,
+                               [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
+}
+
 // Ropes about their last moves, as in Newton's method.
-bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
+ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies, bool is_shortest) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
     const double move_tolerance = settings.rope.move_tolerance_together;  // of a segment's length
     const int max_solves = has_ropes() ? settings.rope.max_iterations : settings.cloth.max_solves;
@@ -248,6 +285,7 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
     const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
     std::vector<SheetSystem> sheets;
     for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth()->system());
+    int meeting_solves = 0;
     for (int solves = 1;; ++solves) {
         std::vector<LineSystem> lines;
         for (const Member& member : ropes())
@@ -257,13 +295,18 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
         body_from_ = body_moves_;
         const int iterations = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_,
                                                                     body_moves_, world_.workers);
-        if (iterations == ClothSolver::not_finite) return false;
+        if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
-        if (solves == max_solves || (!choose_again() && travel < move_tolerance)) break;
+        if (solves < max_solves && (choose_again() || travel >= move_tolerance)) continue;
+        const std::vector<ThinMeeting> meetings = CrossingGuard(seen_, guarded_, world_.workers).find(moves_);
+        if (meetings.empty()) return Outcome::solved;
+        const bool is_last = meeting_solves++ == settings.cloth.max_meeting_solves;
+        if (!is_shortest &&
+            (is_last || std::ranges::any_of(meetings, [&](const auto& meeting) { return is_too_fast(meeting); })))
+            return Outcome::too_fast;
+        if (is_last) return Outcome::solved;
+        add_contacts(meetings);
     }
-    return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
-           std::ranges::all_of(body_moves_,
-                               [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
 // Nodes that others hold; these move by the moves that were found.
@@ -294,34 +337,60 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     given_.assign(moves_.size(), {});
     const std::vector<double> fractions =
         fractions_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), members_[0].substep);
+    const std::vector<double> compliance = compliances();
     pairs_.finish(moves_, given_, world_.deformables.thin_contacts);
     ties_.finish(moves_, given_);
     for (Member& member : members_) {
-        DeformableRecord& record = member.record();
-        const std::span<const Vec3> moves = part(moves_, member), given = part(given_, member);
-        if (record.cloth()) {
-            record.cloth()->touch() = std::move(member.touch);
-            record.cloth()->layers() = std::move(member.layers);
-            record.cloth()->end(member.substep, moves, body_moves_, given, bodies, world_.workers);
-        } else if (record.rope()->has_clamps()) {
-            record.rope()->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
-                                   member.thin->attachment_bodies, bodies, springs_of_others(member));
-        } else {
-            record.rope()->touch() = std::move(member.touch);
-            record.rope()->end(member.substep, moves, body_moves_, given, bodies, fractions);
+        const std::span<Vec3> moves = part(moves_, member);
+        const std::span<const Vec3> given = part(given_, member);
+        if (ClothSheet* sheet = member.record().cloth()) {
+            sheet->touch() = std::move(member.touch);
+            sheet->finish(member.substep, moves, body_moves_, given, bodies);
+        } else if (RopeLine* rope = member.record().rope(); !rope->has_clamps()) {
+            rope->touch() = std::move(member.touch);
+            rope->finish(member.substep, moves, body_moves_, given, bodies, fractions);
         }
-        if (record.rope()) note_breaks(world_, record);
+    }
+    CrossingGuard(seen_, guarded_, world_.workers).hold(compliance, moves_);
+    for (Member& member : members_) {
+        const std::span<const Vec3> moves = part(moves_, member);
+        if (ClothSheet* sheet = member.record().cloth()) {
+            sheet->move_nodes(moves, h_);
+            continue;
+        }
+        RopeLine* rope = member.record().rope();
+        if (rope->has_clamps())
+            rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
+                          member.thin->attachment_bodies, bodies, springs_of_others(member));
+        else
+            rope->move_nodes(moves, h_);
+        note_breaks(world_, member.record());
     }
 }
 
-void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
+bool ThinGroupPart::advance(std::span<TouchedBody> bodies, bool is_shortest) {
+    const bool is_sheet_alone = members_.size() == 1 && sheets_ == 1;
+    if (is_sheet_alone && members_[0].record().cloth()->is_frozen()) return true;
     begin(bodies);
-    if (solve(bodies)) return end(bodies);
-    // A member with non-finite numbers freezes by itself.
-    for (Member& member : members_) {
-        advance_thin(*member.thin, member.substep, bodies, world_.workers);
-        if (member.record().rope()) note_breaks(world_, member.record());
+    const Outcome outcome = solve(bodies, is_shortest);
+    if (outcome == Outcome::too_fast) return false;
+    if (outcome == Outcome::solved) {
+        end(bodies);
+        return true;
     }
+    // Numbers that are none: who has them freezes by itself.
+    if (is_sheet_alone) members_[0].record().cloth()->freeze();
+    for (Member& member : members_) {
+        if (is_sheet_alone) break;
+        if (member.record().rope()) {
+            advance_rope(*member.thin, member.substep, bodies);
+            note_breaks(world_, member.record());
+        } else {
+            const ThinGroup alone{.members = {0}, .pairs = {}, .ties = {}};
+            ThinGroupPart(world_, alone, std::span(member.thin, 1), h_, member.substep.time).advance(bodies, true);
+        }
+    }
+    return true;
 }
 
 }  // namespace embody::physics::stages

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/deformable/contact/crossing_guard.h"
 #include "physics/deformable/contact/tie_springs.h"
 #include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_groups.h"
@@ -14,8 +15,9 @@ public:
     /// `h`: of the part, which begins at `time` in the step, s. The arguments outlive it.
     ThinGroupPart(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                   double time);
-    /// Pushes the bodies, notes ropes that break. A member with non-finite numbers freezes.
-    void advance(std::span<TouchedBody> bodies);
+    /// Pushes the bodies, notes ropes that break. A member with non-finite numbers freezes. Where things meet so fast
+    /// that shorter parts are needed nothing is changed and the answer is false; never if `is_shortest`.
+    bool advance(std::span<TouchedBody> bodies, bool is_shortest);
 
 private:
     struct Member {
@@ -23,7 +25,6 @@ private:
         Substep substep;
         std::size_t first = 0, count = 0;  // of its nodes among all
         TouchSprings touch;                // as the last solve had them
-        PairSprings layers;                // of a sheet
         std::vector<std::array<std::uint32_t, 2>> segments;
         [[nodiscard]] DeformableRecord& record() const { return *thin->record; }
     };
@@ -34,14 +35,19 @@ private:
     [[nodiscard]] std::span<Member> ropes() { return std::span(members_).subspan(sheets_); }
     [[nodiscard]] bool has_ropes() const { return members_.size() > sheets_; }
     void begin(std::span<const TouchedBody> bodies);
-    void begin_members(std::span<const TouchedBody> bodies, std::span<ThinMember> seen);
-    void load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const;
-    void begin_pairs(std::span<const ThinMember> seen);
-    bool solve(std::span<const TouchedBody> bodies);
+    void begin_members(std::span<const TouchedBody> bodies);
+    void load_nodes(std::span<const TouchedBody> bodies);
+    void begin_pairs();
+    enum class Outcome : std::uint8_t { solved, too_fast, not_finite };
+    Outcome solve(std::span<const TouchedBody> bodies, bool is_shortest);
+    [[nodiscard]] bool are_finite() const;
+    [[nodiscard]] bool is_too_fast(const ThinMeeting& meeting) const;
     void gather_springs();
     [[nodiscard]] double energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
     double go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
     bool choose_again();
+    void add_contacts(std::span<const ThinMeeting> meetings);
+    [[nodiscard]] std::vector<double> compliances() const;
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
 
@@ -51,7 +57,10 @@ private:
     std::vector<Member> members_;       // sheets first
     std::vector<std::uint32_t> place_;  // of the group's members among these
     std::size_t sheets_ = 0;
-    PairSprings pairs_;
+    std::vector<ThinMember> seen_;  // the members as others see them
+    std::vector<ThinPair> met_;     // pairs of members, of a sheet with itself too
+    std::vector<CrossingGuard::Pair> guarded_;  // the same
+    PairSprings pairs_;                         // of `met_`
     TieSprings ties_;
     std::vector<TouchSpring> springs_;        // of all
     std::vector<Vec3> moves_, from_, given_;  // by node of all

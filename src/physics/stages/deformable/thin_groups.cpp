@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "foundation/task_pool.h"
@@ -73,8 +74,6 @@ std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const De
     return candidates;
 }
 
-bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
-
 // m: a wider member has broken numbers; it will freeze, and others ignore it.
 constexpr double max_finite_size = 1e5;
 
@@ -83,16 +82,40 @@ bool may_touch_others(const Bounds& bounds) {
     return size.x < max_finite_size && size.y < max_finite_size && size.z < max_finite_size;
 }
 
+// Of a rope with itself: segments that are so far apart along it that it need not be straight between them, half a turn
+// of its own radius.
+std::vector<ThinCandidate> own_candidates_of(const DeformableAccess& world, const DeformableRecord& record) {
+    if (!may_touch_others(record.bounds())) return {};
+    std::vector<ThinCandidate> candidates;
+    std::vector<std::array<std::uint32_t, 2>> segments;
+    const ThinSurface surface = surface_of(record, segments);
+    find_thin_candidates(surface, surface, world.settings.time_step, pull_on(world, record), world.workers, candidates);
+    const double bend = std::numbers::pi * surface.radius / surface.edge_length;
+    std::erase_if(candidates,
+                  [&](const ThinCandidate& candidate) { return candidate.second - candidate.first < 1 + bend; });
+    return candidates;
+}
+
+bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
+
+// With itself: a sheet looks for its candidates in each part of a step, a rope has them here. A rope that is twisted
+// does not touch itself: the common solve does not include its twist.
+void add_own_pair(const DeformableAccess& world, std::uint32_t i, const DeformableRecord& record,
+                  std::vector<ThinPair>& pairs) {
+    ThinPair pair{
+        i, i, friction_between(record.definition.material, record.definition.material, world.rigid.surface_pairs), {}};
+    if (record.rope()) {
+        if (record.rope()->has_clamps()) return;
+        pair.candidates = own_candidates_of(world, record);
+        if (pair.candidates.empty()) return;
+    }
+    pairs.push_back(std::move(pair));
+}
+
 // The group that member i belongs to: that of its first member.
 std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     while (group[i] != i) i = group[i] = group[group[i]];
     return i;
-}
-
-void advance_alone(const DeformableAccess& world, ThinDeformable& thin, double h, double time,
-                   std::vector<TouchedBody>& bodies) {
-    advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, world.workers);
-    if (thin.record->rope()) note_breaks(world, *thin.record);
 }
 
 void advance_group(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
@@ -104,19 +127,25 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         solids[i].add(thin[group.members[i]], bodies, h);
         ties[i].add(thin[group.members[i]], bodies, h);
     }
-    if (group.members.size() == 1) {
-        advance_alone(world, thin[group.members[0]], h, time, bodies);
+    ThinDeformable& first_member = thin[group.members[0]];
+    if (group.members.size() == 1 && group.pairs.empty() && first_member.record->rope()) {
+        advance_rope(first_member, substep_of(world, *first_member.record, h, time), bodies);
+        note_breaks(world, *first_member.record);
     } else {
-        int parts = 1;
-        for (const std::uint32_t member : group.members) {
-            ClothSheet* sheet = thin[member].record->cloth();
-            if (sheet != nullptr)
-                parts = std::max(parts, sheet->parts_of(h, world.settings.solver.deformable.cloth, world.workers));
-        }
+        // In parts where things meet fast: half as long until they can be solved, then longer again.
+        const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
         const PartPushes pushes(bodies);
-        for (int k = 0; k < parts; ++k) {
-            if (k > 0) pushes.go_on(bodies, h / parts);
-            ThinGroupPart(world, group, thin, h / parts, time + k * h / parts).advance(bodies);
+        double done = 0, part = h;
+        while (done < h) {
+            const std::vector<TouchedBody> before = bodies;
+            if (done > 0) pushes.go_on(bodies, part);
+            if (ThinGroupPart(world, group, thin, part, time + done).advance(bodies, part / 2 < shortest)) {
+                done += part;
+                part = std::min(2 * part, h - done);
+            } else {
+                bodies = before;
+                part /= 2;
+            }
         }
     }
     for (std::size_t i = 0; i < group.members.size(); ++i) {
@@ -231,6 +260,7 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
             group[std::max(i, k)] = std::min(i, k);
         }
     }
+    for (std::uint32_t i = 0; i < thin.size(); ++i) add_own_pair(world, i, *thin[i].record, pairs);
     std::vector<ThinTie> ties = find_ties(world, thin);
     for (const ThinTie& tie : ties) {
         const std::uint32_t i = root_of(group, tie.member), k = root_of(group, tie.other);
