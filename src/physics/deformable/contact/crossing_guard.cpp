@@ -21,6 +21,10 @@ bool has_common(std::span<const std::uint32_t> a, std::span<const std::uint32_t>
     return std::ranges::any_of(a, [&](std::uint32_t node) { return std::ranges::find(b, node) != b.end(); });
 }
 
+bool has_any(const std::vector<bool>& marked, std::span<const std::uint32_t> nodes) {
+    return !marked.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return marked[node]; });
+}
+
 }  // namespace
 
 const CrossingGuard::Stars& CrossingGuard::stars_of(std::uint32_t member) {
@@ -109,7 +113,10 @@ std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) {
             const std::span<const std::uint32_t> nodes(points.node.data(), static_cast<std::size_t>(points.count));
             const auto of_first = nodes.first(static_cast<std::size_t>(points.count_first));
             const auto of_second = nodes.subspan(of_first.size());
-            if (is_tangled(first, of_first, second, of_second)) continue;
+            if (has_any(candidate.is_swapped ? pair.tied_b : pair.tied_a, of_first) ||
+                has_any(candidate.is_swapped ? pair.tied_a : pair.tied_b, of_second) ||
+                is_tangled(first, of_first, second, of_second))
+                continue;
             points.weight = impact->weight;
             for (std::size_t k = 0; k < nodes.size(); ++k) points.away += impact->weight[k] * features.start[k];
             meeting.normal = impact->normal;
@@ -127,14 +134,16 @@ void CrossingGuard::hold(std::span<const double> compliance, std::span<Vec3> mov
         while (zone[i] != i) i = zone[i] = zone[zone[i]];
         return i;
     };
+    bool has_joined = false;
     const auto join = [&](std::uint32_t a, std::uint32_t b) {
         a = root_of(a);
         b = root_of(b);
+        has_joined |= a != b;
         zone[std::max(a, b)] = std::min(a, b);
     };
     for (int pass = 0;; ++pass) {
         const std::vector<ThinMeeting> meetings = find(moves);
-        if (meetings.empty()) return;
+        has_joined = false;
         for (const ThinMeeting& meeting : meetings) {
             const Pair& pair = pairs_[meeting.pair];
             const ThinMember &first = members_[meeting.candidate.is_swapped ? pair.b : pair.a],
@@ -149,6 +158,7 @@ void CrossingGuard::hold(std::span<const double> compliance, std::span<Vec3> mov
                 for (std::uint32_t i = 1; i < member->surface.nodes->size(); ++i) join(member->first, member->first + i);
             }
         }
+        if (!has_joined) return;
         std::vector<double> mass(moves.size(), 0);
         std::vector<Vec3> sum(moves.size());
         std::vector<std::uint8_t> is_held(moves.size(), 0), is_joined(moves.size(), 0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace embody::physics::deformable {
@@ -261,16 +262,19 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
 
 void PairSprings::add(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
                       std::span<const ThinMeeting> meetings, std::span<const Vec3> moves) {
-    const std::size_t before = springs_.size();
+    const auto key = [&](std::uint32_t i) {
+        const ThinContact& own = features_[i];
+        return std::tuple(pair_[i], own.kind, own.is_swapped, own.first, own.second);
+    };
+    std::vector<std::uint32_t> known(springs_.size());
+    std::iota(known.begin(), known.end(), 0u);
+    std::ranges::stable_sort(known, {}, key);
     for (const ThinMeeting& meeting : meetings) {
         const ThinCandidate& candidate = meeting.candidate;
         bool is_known = false;
-        for (std::size_t i = 0; i < before; ++i) {
-            const ThinContact& own = features_[i];
-            if (pair_[i] != meeting.pair || own.kind != candidate.kind || own.is_swapped != candidate.is_swapped ||
-                own.first != candidate.first || own.second != candidate.second ||
-                dot(own.normal, meeting.normal) < start_.settings.same_normal_cosine)
-                continue;
+        const std::tuple own(meeting.pair, candidate.kind, candidate.is_swapped, candidate.first, candidate.second);
+        for (const std::uint32_t i : std::ranges::equal_range(known, own, {}, key)) {
+            if (dot(features_[i].normal, meeting.normal) < start_.settings.same_normal_cosine) continue;
             TouchSpring& spring = springs_[i];
             const double push = dot(spring.force(spring.lead(moves, {})), spring.normal);
             if (spring.acts) spring.pull = std::max(push, 0.0) * spring.normal;

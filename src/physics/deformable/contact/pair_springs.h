@@ -43,6 +43,7 @@ struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;
     std::vector<ThinCandidate> candidates;
+    std::vector<bool> tied_a = {}, tied_b = {};  ///< nodes that a tie holds at the other; none: empty
 };
 
 /// Two features that would meet within a substep.

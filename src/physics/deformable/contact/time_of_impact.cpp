@@ -25,9 +25,9 @@ std::array<double, 4> weights_of(ThinFeature kind, const std::array<Vec3, 4>& x)
 }  // namespace
 
 std::optional<Impact> first_impact(const MovingFeatures& features, double distance) {
-    constexpr double same_place = 1e-9;  // m: features that are closer have no direction
+    constexpr double same_place = 0.01;  // of the distance: nearer ones began in one place and have no side
     constexpr double kept = 0.1;         // of the distance, as in the paper's section 6
-    constexpr int max_tries = 100;       // each leaves at most nine tenths of the way to the impact
+    constexpr int max_tries = 100;       // each goes nine tenths of the way that is safe
     const std::size_t first = features.kind == ThinFeature::edge_on_edge ? 2 : 1;
     const std::size_t count = features.kind == ThinFeature::node_on_edge ? 3 : 4;
     // The motion of the whole brings nothing nearer.
@@ -49,8 +49,9 @@ std::optional<Impact> first_impact(const MovingFeatures& features, double distan
         return size;
     };
     double now = find_distance();
-    if (now < same_place) return std::nullopt;
-    const double least = kept * std::min(distance, now), enough = kept * (now - least);
+    if (now < same_place * distance) return std::nullopt;
+    const double least = std::max(kept * std::min(distance, now), same_place * distance);
+    const double enough = kept * (now - least);
     if (fastest <= now - least) return std::nullopt;
     for (int i = 0; i < max_tries; ++i) {
         const double next = impact.time + (1 - kept) * (now - least) / fastest;

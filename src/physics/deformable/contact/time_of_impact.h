@@ -24,9 +24,10 @@ struct Impact {
 };
 
 /// When two features that move straight come so near that they might meet: nearer than a tenth of `distance` (m, > 0)
-/// or of the distance that they began with, whichever is less, and a tenth of what is left. Nothing is missed,
-/// whatever the moves: places in between are tried as far as the features cannot meet (M. Li, D. Kaufman, C. Jiang,
-/// "Codimensional incremental potential contact", 2021, algorithm 1). Nothing for those that begin in one place.
+/// or of the distance that they began with, whichever is less, but not below a hundredth of `distance`, and a tenth of
+/// what is left. Nothing is missed, whatever the moves: places in between are tried as far as the features cannot meet
+/// (M. Li, D. Kaufman, C. Jiang, "Codimensional incremental potential contact", 2021, algorithm 1). None for those that
+/// begin nearer than that hundredth, which have no side of each other: only what was put there does.
 std::optional<Impact> first_impact(const MovingFeatures& features, double distance);
 
 }  // namespace embody::physics::deformable

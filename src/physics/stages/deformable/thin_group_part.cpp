@@ -134,7 +134,7 @@ void ThinGroupPart::begin_pairs() {
         const Member& member = members_[pair.a];
         ClothSheet* sheet = pair.a == pair.b ? member.record().cloth() : nullptr;
         if (sheet != nullptr) pair.candidates = sheet->near_layers(member.substep, world_.workers);
-        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr});
+        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.tied_a, pair.tied_b});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
     pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, settings});
@@ -205,7 +205,7 @@ void ThinGroupPart::add_contacts(std::span<const ThinMeeting> meetings) {
 
 // A contact holds the features that meet along one normal: they must not go far past each other.
 bool ThinGroupPart::is_too_fast(const ThinMeeting& meeting) const {
-    const auto& [a, b, layers] = guarded_[meeting.pair];
+    const std::uint32_t a = met_[meeting.pair].a, b = met_[meeting.pair].b;
     const ThinMember &first = seen_[meeting.candidate.is_swapped ? b : a],
                      &second = seen_[meeting.candidate.is_swapped ? a : b];
     const double edge = std::min(first.surface.edge_length, second.surface.edge_length);

@@ -118,6 +118,47 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
+// Whether something that can move is near it.
+bool is_near_movable(const ThinDeformable& rope, std::span<const TouchedBody> bodies) {
+    const auto is_movable = [&](std::uint32_t body) { return bodies[body].inverse_mass > 0; };
+    return std::ranges::any_of(rope.contacts, [&](const NodeContact& contact) { return is_movable(contact.body); }) ||
+           std::ranges::any_of(rope.segment_contacts,
+                               [&](const SegmentContact& contact) { return is_movable(contact.plane.body); });
+}
+
+// Whether the rope goes on by itself: its own solve, which also knows twist, is the better one. False, with nothing
+// changed, where it touches itself or would.
+bool advance_rope_alone(const DeformableAccess& world, const ThinGroup& group, ThinDeformable& thin, double h,
+                        double time, std::vector<TouchedBody>& bodies) {
+    DeformableRecord& record = *thin.record;
+    const Substep substep = substep_of(world, record, h, time);
+    if (group.pairs.empty() || is_near_movable(thin, bodies)) {
+        advance_rope(thin, substep, bodies);
+        note_breaks(world, record);
+        return true;
+    }
+    const auto known = world.deformables.thin_contacts.find({record.slot, record.slot});
+    const auto pushes = [](const ThinContact& contact) { return contact.push > 0; };
+    if (known != world.deformables.thin_contacts.end() && std::ranges::any_of(known->second, pushes)) return false;
+    const RopeLine before = *record.rope();
+    const std::vector<TouchedBody> bodies_before = bodies;
+    advance_rope(thin, substep, bodies);
+    std::vector<Vec3> moves;
+    for (std::size_t i = 0; i < before.nodes().size(); ++i)
+        moves.push_back(record.nodes().position[i] - before.nodes().position[i]);
+    std::vector<std::array<std::uint32_t, 2>> segments;
+    ThinMember seen{surface_of(record, segments), record.slot, 0, {}, {}};
+    seen.surface.nodes = &before.nodes();
+    const CrossingGuard::Pair self{0, 0, nullptr, {}, {}};
+    if (CrossingGuard(std::span(&seen, 1), std::span(&self, 1), world.workers).find(moves).empty()) {
+        note_breaks(world, record);
+        return true;
+    }
+    *record.rope() = before;
+    bodies = bodies_before;
+    return false;
+}
+
 void advance_group(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                    double time, std::vector<TouchedBody>& bodies, ThinOnSolids::Surfaces& surfaces) {
     const std::size_t first = bodies.size();
@@ -128,10 +169,8 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         ties[i].add(thin[group.members[i]], bodies, h);
     }
     ThinDeformable& first_member = thin[group.members[0]];
-    if (group.members.size() == 1 && group.pairs.empty() && first_member.record->rope()) {
-        advance_rope(first_member, substep_of(world, *first_member.record, h, time), bodies);
-        note_breaks(world, *first_member.record);
-    } else {
+    if (group.members.size() > 1 || !first_member.record->rope() ||
+        !advance_rope_alone(world, group, first_member, h, time, bodies)) {
         // In parts where things meet fast: half as long until they can be solved, then longer again.
         const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
         const PartPushes pushes(bodies);
@@ -255,6 +294,10 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
                           friction_between(one.definition.material, two.definition.material, world.rigid.surface_pairs),
                           candidates_of(world, one, two)};
             if (pair.candidates.empty()) continue;
+            if (!one.definition.ties.empty() || !two.definition.ties.empty()) {
+                pair.tied_a = tied_nodes(world, one, two);
+                pair.tied_b = tied_nodes(world, two, one);
+            }
             pairs.push_back(std::move(pair));
             const std::uint32_t i = root_of(group, a), k = root_of(group, b);
             group[std::max(i, k)] = std::min(i, k);
