@@ -277,7 +277,7 @@ void PairSprings::add(std::span<const ThinMember> members, std::span<const ThinP
             if (dot(features_[i].normal, meeting.normal) < start_.settings.same_normal_cosine) continue;
             TouchSpring& spring = springs_[i];
             const double push = dot(spring.force(spring.lead(moves, {})), spring.normal);
-            if (spring.acts) spring.pull = std::max(push, 0.0) * spring.normal;
+            if (spring.acts) spring.pull = kept_push(spring, push) * spring.normal;
             is_known = true;
         }
         if (is_known) continue;
@@ -309,7 +309,8 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
         own.force = force;
         own.push = kept_push(spring, push);
         // What stops a fast thing is no load: a load stays.
-        own.carried = std::max(std::min(own.push, before) / gravity, start_.settings.load_memory * own.carried);
+        own.carried = std::min(
+            start_.mass, std::max(std::min(own.push, before) / gravity, start_.settings.load_memory * own.carried));
         own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
         own.sticks = spring.sticks;
         if (slots_[pair_[i]].first == slots_[pair_[i]].second) continue;

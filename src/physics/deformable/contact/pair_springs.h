@@ -61,6 +61,7 @@ public:
     struct Start {
         double h = 0;        ///< length of the substep, s
         double gravity = 0;  ///< m/s²
+        double mass = 0;     ///< of all that a contact may carry, kg
         ThinContactSettings settings = {};
     };
     /// Begins a substep.

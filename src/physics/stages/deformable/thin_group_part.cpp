@@ -123,7 +123,19 @@ void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies) {
     }
 }
 
-void ThinGroupPart::begin_pairs() {
+// Of all members and the bodies near them, kg.
+double ThinGroupPart::carried_mass(std::span<const TouchedBody> bodies) const {
+    double mass = 0;
+    for (const TouchedBody& body : bodies) {
+        if (body.inverse_mass > 0) mass += 1 / body.inverse_mass;
+    }
+    for (const ThinMember& member : seen_) {
+        for (const double of_node : member.surface.nodes->mass) mass += of_node;
+    }
+    return mass;
+}
+
+void ThinGroupPart::begin_pairs(std::span<const TouchedBody> bodies) {
     const double gravity = length(world_.settings.gravity);
     double pull = gravity;  // the strongest
     for (const Member& member : members_) pull = std::max(pull, length(member.substep.gravity));
@@ -137,7 +149,7 @@ void ThinGroupPart::begin_pairs() {
         guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.tied_a, pair.tied_b});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
-    pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, settings});
+    pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, carried_mass(bodies), settings});
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -153,7 +165,7 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     body_moves_.assign(bodies.size(), {});
     begin_members(bodies);
     load_nodes(bodies);
-    begin_pairs();
+    begin_pairs(bodies);
     for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, true);
     pairs_.choose(moves_, true);
     // Starts from rest or from inertia, whichever is closer to the solution, as RopeLine does.

@@ -37,7 +37,8 @@ private:
     void begin(std::span<const TouchedBody> bodies);
     void begin_members(std::span<const TouchedBody> bodies);
     void load_nodes(std::span<const TouchedBody> bodies);
-    void begin_pairs();
+    void begin_pairs(std::span<const TouchedBody> bodies);
+    [[nodiscard]] double carried_mass(std::span<const TouchedBody> bodies) const;
     enum class Outcome : std::uint8_t { solved, too_fast, not_finite };
     Outcome solve(std::span<const TouchedBody> bodies, bool is_shortest);
     [[nodiscard]] bool are_finite() const;
