@@ -54,6 +54,7 @@ export class EntityFields {
     if (single?.shape) shown.push(...this.shapeRows(single.shape));
     if (entities.every((entity) => entity.model)) shown.push(this.scaleRow());
     if (entities.every((entity) => entity.shape)) shown.push(this.colorRow());
+    shown.push(this.formRow());
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
     const card = single?.model ? modelCard(this.parts, single.model) : null;
@@ -148,6 +149,15 @@ export class EntityFields {
   private scaleRow(): Row {
     const field = numberField(t("Scale"), "", (scale) => this.resize(() => ({ scale })), { step: 0.05, each: (change) => this.resize((entity) => ({ scale: change(entity.scale ?? 1) })) });
     return { root: row(t("Scale"), field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
+  }
+
+  /** Shown where a run has left its form: folds, dents, heaps, puddles. */
+  private formRow(): Row {
+    const kept = () => this.entities().filter((entity) => entity.kept);
+    const forget = element("button", { "data-testid": "forget-form", title: t("As modelled again, where it lies"), onclick: () => this.changeEach(kept(), () => ({ kept: null })) }, t("Forget"));
+    const root = row(t("Form"), element("span", { class: "field form-field" }, element("span", {}, t("Kept from a run")), forget));
+    root.dataset["testid"] = "kept-form";
+    return { root, update: () => show(root, kept().length > 0) };
   }
 
   private colorRow(): Row {
