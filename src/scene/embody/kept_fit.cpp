@@ -15,10 +15,11 @@ void add(StateHash& hash, const std::string& word) {
     hash.add_bytes(word.data(), word.size());
 }
 
-// To nine digits: values that are computed may differ in the last ones between machines.
+// To nine digits: values that are computed may differ in the last ones between machines, and zeros in their sign where
+// another program has written the file.
 void add(StateHash& hash, double number) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.9g", number);
+    std::snprintf(text, sizeof text, "%.9g", number == 0 ? 0.0 : number);
     add(hash, std::string(text));
 }
 
