@@ -54,17 +54,17 @@ export class EntityFields {
     if (single?.shape) shown.push(...this.shapeRows(single.shape));
     if (entities.every((entity) => entity.model)) shown.push(this.scaleRow());
     if (entities.every((entity) => entity.shape)) shown.push(this.colorRow());
-    shown.push(this.formRow());
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
     const card = single?.model ? modelCard(this.parts, single.model) : null;
     const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, t("{{count}} entities", { count: entities.length }));
     const padlock = this.padlock();
-    this.rows.push(padlock);
+    const form = this.formLine();
+    this.rows.push(padlock, form);
     const group = single ? "" : outermostGroup(entities[0]!.group);
     const isGroup = group !== "" && entities.every((entity) => outermostGroup(entity.group) === group);
     const hint = isGroup ? element("p", { class: "note", "data-testid": "group-hint" }, t("Group “{{group}}”. Alt and a click select one of them alone.", { group })) : null;
-    this.head.replaceChildren(...[element("div", { class: "entity-head" }, title, padlock.root), hint, card].filter((each) => each !== null));
+    this.head.replaceChildren(...[element("div", { class: "entity-head" }, title, padlock.root), hint, card, form.root].filter((each) => each !== null));
     this.root.replaceChildren(
       foldingGroup(this.parts.preferences, "entity.place", t("Place and size"), true, ...shown.map((row) => row.root)),
       foldingGroup(this.parts.preferences, "entity.start", t("Start and forces"), false, ...start.map((row) => row.root)),
@@ -152,11 +152,10 @@ export class EntityFields {
   }
 
   /** Shown where a run has left its form: folds, dents, heaps, puddles. */
-  private formRow(): Row {
+  private formLine(): Row {
     const kept = () => this.entities().filter((entity) => entity.kept);
     const forget = element("button", { "data-testid": "forget-form", title: t("As modelled again, where it lies"), onclick: () => this.changeEach(kept(), () => ({ kept: null })) }, t("Forget"));
-    const root = row(t("Form"), element("span", { class: "field form-field" }, element("span", {}, t("Kept from a run")), forget));
-    root.dataset["testid"] = "kept-form";
+    const root = element("div", { class: "form-line", "data-testid": "kept-form" }, element("span", {}, t("Form kept from a run")), forget);
     return { root, update: () => show(root, kept().length > 0) };
   }
 
