@@ -15,8 +15,9 @@ namespace {
 
 struct Checked {
     std::size_t entities = 0;
-    std::vector<std::string> notes;     ///< differences between what is simulated and what the entity's kind asks for
-    std::vector<Error> contradictions;  ///< between attributes that a person set; the scene can be played
+    std::vector<std::string> notes;  ///< differences between what is simulated and what the entity's kind asks for
+    /// Between attributes that a person set, or a kept form and its entity; the scene can be played.
+    std::vector<Error> contradictions;
 };
 
 /// Reads the file and creates the world, as playing it would.
@@ -35,12 +36,18 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
         const auto found = definitions.attributes.contradictions(
             document->entities[i], scene::circumstances_of(document->settings, has_joint));
         if (!found) return scene::in_place(file.string(), found.error());
-        const std::string where = file.string() + ": entities[" + std::to_string(i) + "].attributes.";
+        const std::string entity = file.string() + ": entities[" + std::to_string(i) + "].";
+        const std::string where = entity + "attributes.";
         for (const attributes::Issue& issue : *found) {
             checked.contradictions.push_back(
                 {where + issue.attribute, issue.why,
                  issue.remedy.empty() ? "change or reset one of these values" : issue.remedy});
         }
+        const auto acting = definitions.attributes.acting(document->entities[i]);
+        if (!acting) return scene::in_place(file.string(), acting.error());
+        const Result<void> kept = definitions.points.check_kept(document->entities[i], *acting);
+        if (!kept)
+            checked.contradictions.push_back({entity + kept.error().where, kept.error().why, kept.error().remedy});
     }
     return checked;
 }
@@ -51,7 +58,7 @@ void print_row(const nlohmann::json& row, std::size_t entities) {
     const std::string file = row["file"];
     for (const auto& note : row["notes"]) print_text("{}: note: {}\n", file, note.get<std::string>());
     if (row["right"]) return print_text("{}: right, {} entities\n", file, entities);
-    print_text("{}: can be simulated, but its attributes contradict each other\n", file);
+    print_text("{}: can be simulated, but what it says contradicts itself\n", file);
 }
 
 }  // namespace

@@ -12,11 +12,12 @@
 #include <thread>
 
 #include "catalog/catalog.h"
+#include "foundation/base64.h"
 #include "scene/file/json/field_reader.h"
 #include "scene/file/json/text.h"
 #include "scene/file/scene_file.h"
+#include "scene/session/kept_forms.h"
 #include "server/debug_board.h"
-#include "server/frame_bytes.h"
 #include "server/state_frame.h"
 
 namespace embody::server {
@@ -407,8 +408,8 @@ json SceneThread::State::whole_frame(const json& id, const json& params) {
     json spawned = json::array();
     for (const scene::EntityState& state : states)
         if (const scene::Entity* entity = session->spawned(state.entity))
-            spawned.push_back(scene::entity_to_json(*entity));
-    json result = {{"frame", base64(whole.frame_since(0).bytes)}, {"spawned", std::move(spawned)}};
+            scene::tell_in_short(spawned.emplace_back(scene::entity_to_json(*entity)));
+    json result = {{"frame", to_base64(whole.frame_since(0).bytes)}, {"spawned", std::move(spawned)}};
     return {{"id", id}, {"ok", true}, {"result", std::move(result)}};
 }
 

@@ -75,6 +75,11 @@ void fill_entities(Document& document) {
                          {"friction_combine", std::string("maximum")},
                          {"kinematic", true}};
     sphere.pose.rotation = from_axis_angle({0, 0, 1}, 1.0 / 3);
+    sphere.kept = KeptForm{.fingerprint = "0123456789abcdef",
+                           .places = {{1.0 / 3, 2, 3, -4, 5e-300, 6}},
+                           .plastic_strain = {{0.1, 0.2, 0.3, 0.4, 0.5}},
+                           .broken = {1, 7},
+                           .cell_size = 0.02};
     sphere.linear_velocity = {1, 2, 3};
     sphere.angular_velocity = {0.1, 0, 0};
     sphere.force = {0, 0, 0.25};

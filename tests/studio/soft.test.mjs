@@ -79,4 +79,28 @@ describe("soft things in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => Math.abs((window.embody.bent(2)?.size[1] ?? 0) - 0.2) < 1e-3);
     assert.deepEqual(page.faults, []);
   });
+
+  it("shows a kept dent before play, says so in the panel and forgets it", async () => {
+    await send("simulation.step", { count: 120 });
+    await page.getByTestId("simulation.keep").click();
+    await page.waitForFunction(() => window.embody.simulation().state === "stopped");
+    // The ball has sunk in, and the sides bulge.
+    const isDented = () => page.waitForFunction(() => (window.embody.bent(2)?.size[0] ?? 0) > 0.403);
+    await isDented();
+    await atRest(page);
+    const at = await page.evaluate(() => window.embody.seenAt(2));
+    await page.mouse.click(at.x, at.y);
+    await page.waitForFunction(() => window.embody.selection().includes(2));
+    const line = page.getByTestId("kept-form");
+    await line.waitFor();
+    assert.match(await line.textContent(), /Form kept from a run/);
+
+    await page.getByTestId("forget-form").click();
+    await page.waitForFunction(() => Math.abs((window.embody.bent(2)?.size[1] ?? 0) - 0.2) < 1e-3);
+    await line.waitFor({ state: "hidden" });
+    await page.getByTestId("edit.undo").click();
+    await isDented();
+    await line.waitFor();
+    assert.deepEqual(page.faults, []);
+  });
 });

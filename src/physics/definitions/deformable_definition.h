@@ -103,6 +103,14 @@ struct DeformableDefinition {
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
 
+/// What a deformable does not recover from by itself.
+struct LastingDeformation {
+    /// Of a solid's tetrahedra in their order, then of its nodes: xx, yy, xy, xz and yz of the plastic strain in the
+    /// axes at rest; zz is -(xx + yy). Empty: none.
+    std::vector<std::array<double, 5>> plastic_strain;
+    std::vector<std::uint32_t> broken_segments;  ///< of a rope, ascending
+};
+
 /// Whether every number is finite and in range, every index points to a node, every node belongs to an element and
 /// every element has its volume, area or length; the error's `where` is the field. Bodies are checked by the world.
 Result<void> validate(const DeformableDefinition& definition);

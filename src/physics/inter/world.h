@@ -120,6 +120,10 @@ public:
     /// Sets the positions and velocities of all its nodes, as many as it has, and wakes it. Pinned ones stay at rest.
     Result<void> set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
                            std::span<const Vec3> velocities);
+    /// Its plastic strain and broken segments; empty if stale.
+    [[nodiscard]] LastingDeformation lasting_deformation(DeformableHandle deformable) const;
+    /// Sets these; the nodes stay where they are. Strains beyond `max_plastic_strain` are shortened to it. Wakes it.
+    Result<void> set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting);
     /// Sets matter, pins, friction and the like for the same nodes and elements; the nodes keep their positions and
     /// velocities, whatever the definition says of pose and velocity. Wakes it.
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -189,6 +190,37 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
     record->last_positions = record->nodes().position;
     record->contacts.clear();
     forget_thin_contacts(state_->deformables, deformable.index);
+    wake_up(*record);
+    return {};
+}
+
+LastingDeformation World::lasting_deformation(DeformableHandle deformable) const {
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
+    LastingDeformation lasting;
+    if (record != nullptr && record->solid()) lasting.plastic_strain = record->solid()->plastic_strain();
+    lasting.broken_segments = broken_segments(deformable);
+    return lasting;
+}
+
+Result<void> World::set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting) {
+    DeformableRecord* record = state_->deformables.records.find(deformable);
+    if (record == nullptr) return no_such_deformable;
+    const auto& [strains, broken] = lasting;
+    const auto* solid = std::get_if<SoftSolid>(&record->definition.matter);
+    const std::size_t parts = solid != nullptr ? solid->tetrahedra.size() + record->nodes().size() : 0;
+    if (!strains.empty() && strains.size() != parts)
+        return Error{"plastic_strain",
+                     "must be " + std::to_string(parts) + ", one a tetrahedron and one a node of a soft solid"};
+    const auto is_number = [](const auto& strain) {
+        return std::ranges::all_of(strain, [](double part) { return std::isfinite(part); });
+    };
+    if (!std::ranges::all_of(strains, is_number)) return Error{"plastic_strain", "must be finite numbers"};
+    const std::size_t segments = record->rope() ? record->nodes().size() - 1 : 0;
+    if (std::ranges::any_of(broken, [segments](std::uint32_t segment) { return segment >= segments; }))
+        return Error{"broken_segments", "has one that is no segment of the rope"};
+    if (solid != nullptr) record->solid()->set_plastic_strain(strains);
+    for (std::uint32_t segment = 0; segment < segments; ++segment)
+        record->rope()->set_broken(segment, std::ranges::find(broken, segment) != broken.end());
     wake_up(*record);
     return {};
 }

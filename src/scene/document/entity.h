@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "attributes/attribute.h"
+#include "foundation/shared_optional.h"
 #include "math/transform.h"
 #include "physics/definitions/shape_definition.h"
 #include "scene/document/field_list.h"
+#include "scene/document/kept_form.h"
 
 namespace embody::scene {
 
@@ -93,6 +95,7 @@ struct Entity {
     std::optional<std::array<double, 3>> color;
     double scale = 1;
     std::vector<Pin> pins;
+    SharedOptional<KeptForm> kept;
     std::string group;  ///< "Dining/Chairs": a group within a group; empty: in none
     bool locked = false;
     Light light;
@@ -125,6 +128,9 @@ inline constexpr auto fields_of<Entity> = std::tuple{
     saved_when_set("group", &Entity::group,
                    "the names of the groups that it is in, the outermost first, with `/` between them"),
     saved_when_set("pins", &Entity::pins, "of a thing of kind `soft`, `cloth` or `rope`: where it is held"),
+    saved_when_set("kept", &Entity::kept,
+                   "of a thing that is not one body: the form with which a run begins, as *Keep* found it; null: as "
+                   "modelled"),
     saved_when_set("locked", &Entity::locked, "whether its pose, size and existence are kept from edits by hand"),
     saved_when_set("light", &Entity::light, "of a lamp"),
     saved_when_set("finish", &Entity::finish,

@@ -138,6 +138,18 @@ std::size_t outside(const Entity& entity) {
 }
 std::size_t outside(const auto& /*joint, action or heading: little*/) { return 0; }
 
+std::size_t outside(const KeptForm& form) {
+    return outside(form.places.values) + outside(form.plastic_strain.values) + outside(form.broken);
+}
+
+// A kept form is one in memory for all states that have it: it counts where it comes or goes.
+std::size_t kept_bytes(const EntityChange& change) {
+    const SharedOptional<KeptForm> before = change.before ? change.before->kept : SharedOptional<KeptForm>();
+    const SharedOptional<KeptForm> after = change.after ? change.after->kept : SharedOptional<KeptForm>();
+    if (before.is_copy_of(after)) return 0;
+    return (before ? outside(*before) : 0) + (after ? outside(*after) : 0);
+}
+
 }  // namespace
 
 std::size_t bytes_of(const Change& change) {
@@ -146,8 +158,11 @@ std::size_t bytes_of(const Change& change) {
     };
     return std::visit(
         [&](const auto& item) {
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(item)>, PoseChange>)
+            using Item = std::remove_cvref_t<decltype(item)>;
+            if constexpr (std::is_same_v<Item, PoseChange>)
                 return sizeof(Change);
+            else if constexpr (std::is_same_v<Item, EntityChange>)
+                return sizeof(Change) + of_state(item.before) + of_state(item.after) + kept_bytes(item);
             else
                 return sizeof(Change) + of_state(item.before) + of_state(item.after);
         },

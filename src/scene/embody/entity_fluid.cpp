@@ -16,6 +16,10 @@ Result<LiquidDefinition> EntityPoints::liquid(const Entity& entity, const attrib
     liquid.pose = entity.pose;
     liquid.matter = attributes::fluid_from_attributes(attributes);
     liquid.matter.allow_sleep = entity.allow_sleep;
+    if (entity.kept) {
+        liquid.places = places_of(*entity.kept);
+        liquid.matter.cell_size = entity.kept->cell_size;
+    }
     liquid.particle_budget = static_cast<std::size_t>(attributes.number("particle_budget", 20000));
     liquid.linear_velocity = entity.linear_velocity;
     liquid.angular_velocity = entity.angular_velocity;

@@ -18,10 +18,14 @@ Result<GrainDefinition> EntityPoints::grains(const Entity& entity, const attribu
     GrainDefinition grains;
     grains.body = std::move(body).value();
     grains.diameter = attributes.number("simulated_diameter", 0.01);
-    const auto budget = static_cast<std::size_t>(attributes.number("grain_budget", 2000));
-    Result<std::vector<Vec3>> centers = fill_with_grains(filled.value(), grains.diameter, budget, entity.index);
-    if (!centers.ok()) return centers.error();
-    grains.centers = std::move(centers).value();
+    if (entity.kept) {
+        grains.centers = places_of(*entity.kept);
+    } else {
+        const auto budget = static_cast<std::size_t>(attributes.number("grain_budget", 2000));
+        Result<std::vector<Vec3>> centers = fill_with_grains(filled.value(), grains.diameter, budget, entity.index);
+        if (!centers.ok()) return centers.error();
+        grains.centers = std::move(centers).value();
+    }
 
     // The mass of all grains together is that of the thing.
     const double volume = physics::mass_properties(physics::SphereShape{grains.diameter / 2}).volume;

@@ -32,12 +32,23 @@ GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet&
     return key;
 }
 
+EntityForm particles_form(const Entity& entity, GeometryKey key, double budget, bool is_liquid) {
+    const KeptFit fit = fit_of_particles(key, entity.geometry, static_cast<std::size_t>(budget), is_liquid);
+    return {true, std::move(key), {}, fit};
+}
+
 }  // namespace
+
+Result<void> EntityPoints::check_kept(const Entity& entity, const attributes::AttributeSet& attributes) {
+    if (!entity.kept) return {};
+    return scene::check_kept(*entity.kept, form(entity, attributes, false).kept_fit);
+}
 
 EntityForm EntityPoints::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
     const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity);
-    if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why};
-    EntityForm soft{true, deformable_key(entity, attributes), {}};
+    if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why, {}};
+    EntityForm soft{true, deformable_key(entity, attributes), {}, {}};
+    soft.kept_fit = fit_of_mesh(soft.points_key, entity.geometry, *mesh.value());
     if (mesh.value()->flatness > 1)
         soft.note = "is so flat that it is computed coarsely, on cells " +
                     std::to_string(std::lround(mesh.value()->flatness)) + " times as wide as thick";
@@ -48,22 +59,26 @@ EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeS
     const PhysicalKind kind = kind_of(attributes);
     const Matter matter = traits_of(kind).matter;
     if (is_held_as_body && (is_deformable(kind) || matter == Matter::liquid))
-        return {false, {}, rigid_because + "a joint or a pin holds on to it"};
+        return {false, {}, rigid_because + "a joint or a pin holds on to it", {}};
     switch (matter) {
         case Matter::none:
         case Matter::body:
             return {};
         case Matter::grains:
-            return {true, points_key(entity, attributes, {"simulated_diameter", "grain_budget"}), {}};
+            return particles_form(entity, points_key(entity, attributes, {"simulated_diameter", "grain_budget"}),
+                                  attributes.number("grain_budget", 2000), false);
         case Matter::liquid:
-            return {true, points_key(entity, attributes, {"fluid_cell_size", "particle_budget"}), {}};
+            return particles_form(entity, points_key(entity, attributes, {"fluid_cell_size", "particle_budget"}),
+                                  attributes.number("particle_budget", 20000) * max_particles_ratio, true);
         case Matter::solid:
             return soft_form(entity, attributes);
         case Matter::sheet:
         case Matter::line: {
             const Result<const ThinForm*> thin = meshes_.thin_form(entity, attributes);
-            if (!thin.ok()) return {false, {}, rigid_because + thin.error().why};
-            return {true, deformable_key(entity, attributes), {}};
+            if (!thin.ok()) return {false, {}, rigid_because + thin.error().why, {}};
+            EntityForm form{true, deformable_key(entity, attributes), {}, {}};
+            form.kept_fit = fit_of_mesh(form.points_key, entity.geometry, *thin.value());
+            return form;
         }
     }
     return {};

@@ -10,6 +10,7 @@
 #include "scene/document/document.h"
 #include "scene/embody/entity_meshes.h"
 #include "scene/embody/geometry_key.h"
+#include "scene/embody/kept_fit.h"
 #include "scene/embody/known_models.h"
 #include "scene/embody/points_definition.h"
 
@@ -20,6 +21,7 @@ struct EntityForm {
     bool has_points = false;
     GeometryKey points_key;  ///< entities with the same key have the same points
     std::string note;        ///< the part of its kind that is not simulated, and why; empty: none
+    KeptFit kept_fit;        ///< what a kept form of its points is like
 };
 
 /// Points of entities that are not one body, from their attributes in effect.
@@ -32,7 +34,10 @@ public:
     /// An entity that cannot be simulated as its kind is rigid, with a note why. An entity that joints or pins hold as
     /// one body is rigid, too.
     EntityForm form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body);
-    /// Definition of an entity whose form has points; everything but its pins to other entities.
+    /// Whether the entity's kept form, if it has one, belongs to its points; the error's `where` is the field.
+    Result<void> check_kept(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// Definition of an entity whose form has points; everything but its pins to other entities, and the places of a
+    /// deformable's nodes where it has a kept form, which belongs to its points.
     Result<PointsDefinition> definition(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Forgets everything that was made of a model.
     void forget(const std::string& key) { meshes_.forget(key); }

@@ -19,11 +19,17 @@ struct GrainDefinition {
     physics::BodyDefinition body;  ///< of each ball, without place and shape; pose and force are the entity's
 };
 
+/// A liquid that joins a fluid of finer cells has at most so many times its budget of particles: the largest ratio of
+/// cell sizes cubed, rounded up.
+inline constexpr std::size_t max_particles_ratio = 5;
+
 /// The initial state of a body of liquid.
 struct LiquidDefinition {
     physics::ShapeDefinition shape;          ///< the shape that it fills, without the bodies in it
     Transform pose;                          ///< of the shape
     physics::FluidDefinition matter;         ///< without volume and velocity
+    std::vector<Vec3> places;                ///< of its particles in the shape's frame, of cells as large as the
+                                             ///< matter's, m; empty: it fills the shape
     std::size_t particle_budget = 0;         ///< maximum number of particles
     Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid body
     Vec3 force;                              ///< constant, N, distributed over the particles

@@ -30,6 +30,8 @@ constexpr const char* name_of<Pin> = "Pin";
 template <>
 constexpr const char* name_of<Light> = "Light";
 template <>
+constexpr const char* name_of<KeptForm> = "KeptForm";
+template <>
 constexpr const char* name_of<Entity> = "Entity";
 template <>
 constexpr const char* name_of<physics::JointLimit> = "JointLimit";
@@ -65,6 +67,7 @@ private:
     static std::string type_of(const double*) { return "number"; }
     static std::string type_of(const std::string*) { return "text"; }
     static std::string type_of(const Finish*) { return "finish"; }
+    static std::string type_of(const PackedNumbers*) { return "packed"; }
     static std::string type_of(const Vec3*) { return "vector"; }
     static std::string type_of(const Transform*) { return "transform"; }
     static std::string type_of(const Target*) { return "target"; }
@@ -74,6 +77,10 @@ private:
 
     template <class Value>
     std::string type_of(const std::optional<Value>*) {
+        return type_of(static_cast<const Value*>(nullptr));
+    }
+    template <class Value>
+    std::string type_of(const SharedOptional<Value>*) {
         return type_of(static_cast<const Value*>(nullptr));
     }
     template <class Item>

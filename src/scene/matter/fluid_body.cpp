@@ -17,21 +17,41 @@ using physics::SleepState;
 
 Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liquids& liquids,
                                                      const LiquidDefinition& definition) {
-    const Result<FilledRegion> region = FilledRegion::of(definition.shape);
-    if (!region.ok()) return region.error();
     std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
     made->matter_ = definition.matter;
     made->force_ = definition.force;
-    const Bounds bounds = transformed(definition.pose, region.value().bounds());
-    Result<FluidFilling> filling =
-        fill_with_fluid(definition.shape, made->matter_.cell_size, definition.particle_budget);
+    made->has_run_ = !definition.places.empty();
+    Result<std::vector<Vec3>> places =
+        definition.places.empty() ? made->fill(definition) : Result<std::vector<Vec3>>(definition.places);
+    if (!places.ok()) return places.error();
+
+    Bounds bounds;
+    for (Vec3& place : places.value()) {
+        place = transform_point(definition.pose, place);
+        bounds.add(place);
+    }
+    std::vector<Particle> particles;
+    particles.reserve(places.value().size());
+    for (const Vec3 position : places.value())
+        particles.push_back(
+            {position, definition.linear_velocity + cross(definition.angular_velocity, position - bounds.center())});
+    made->kept_ = std::move(particles);
+    if (!definition.enabled) return made;
+    if (Result<void> put = made->set_enabled(true); !put.ok()) return put.error();
+    return made;
+}
+
+Result<std::vector<Vec3>> FluidBody::fill(const LiquidDefinition& definition) {
+    const Result<FilledRegion> region = FilledRegion::of(definition.shape);
+    if (!region.ok()) return region.error();
+    Result<FluidFilling> filling = fill_with_fluid(definition.shape, matter_.cell_size, definition.particle_budget);
     if (!filling.ok()) return filling.error();
     // Particles that join a fluid have the volume of that fluid's particles, whatever their number.
-    made->matter_.cell_size = filling.value().cell_size;
-    const double cell = liquids.cell_size(made->matter_, bounds);
-    bool is_own = cell == made->matter_.cell_size;
+    matter_.cell_size = filling.value().cell_size;
+    const double cell = liquids_.cell_size(matter_, transformed(definition.pose, region.value().bounds()));
+    bool is_own = cell == matter_.cell_size;
     if (!is_own) {
-        const std::size_t max_distance = definition.particle_budget * Liquids::max_particles_ratio;
+        const std::size_t max_distance = definition.particle_budget * max_particles_ratio;
         Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, max_distance);
         // A liquid thinner than the other's particles would get more volume from them: it gets its own fluid.
         constexpr double max_cell_ratio = 1.08;  // ratio of cell sizes; 1.26 in volume
@@ -46,20 +66,8 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
                          std::to_string(static_cast<int>(std::ceil(filling.value().cell_size))) +
                          " m wide, more than 1 m",
                      "raise it, or fill a smaller shape"};
-    made->matter_.cell_size = is_own ? std::max(filling.value().cell_size, 1e-3) : cell;
-
-    std::vector<Particle> particles;
-    particles.reserve(filling.value().places.size());
-    const Vec3 center = bounds.center();
-    for (const Vec3 place : filling.value().places) {
-        const Vec3 position = transform_point(definition.pose, place);
-        const Vec3 velocity = definition.linear_velocity + cross(definition.angular_velocity, position - center);
-        particles.push_back({position, velocity});
-    }
-    made->kept_ = std::move(particles);
-    if (!definition.enabled) return made;
-    if (Result<void> put = made->set_enabled(true); !put.ok()) return put.error();
-    return made;
+    matter_.cell_size = is_own ? std::max(filling.value().cell_size, 1e-3) : cell;
+    return std::move(filling.value().places);
 }
 
 FluidBody::~FluidBody() {
@@ -70,7 +78,7 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
     std::vector<Vec3> places;
     places.reserve(particles.size());
     for (const Particle& particle : particles) places.push_back(particle.position);
-    const Result<Liquids::Part*> part = liquids_.add(matter_, places);
+    const Result<Liquids::Part*> part = has_run_ ? liquids_.add_again(matter_, places) : liquids_.add(matter_, places);
     if (!part.ok())
         return Error{"shape", "holds no liquid: " + part.error().why,
                      "place it outside of solid things, or make it larger"};
@@ -251,6 +259,7 @@ Result<void> FluidBody::set_enabled(bool enabled) {
         return {};
     }
     kept_ = particles();
+    has_run_ = true;
     liquids_.remove(std::exchange(part_, nullptr));
     return {};
 }

@@ -21,6 +21,8 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override;  ///< of a ball with a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
+    /// Of the cells that its particles are made for, m.
+    [[nodiscard]] double cell_size() const { return matter_.cell_size; }
     /// The fluid of the world that its particles belong to; null while it is disabled.
     [[nodiscard]] physics::FluidHandle fluid() const { return part_ ? part_->fluid : physics::FluidHandle{}; }
     [[nodiscard]] physics::SleepState state() const override;
@@ -51,6 +53,8 @@ private:
     [[nodiscard]] std::size_t count() const;
     Result<void> put(const std::vector<Particle>& particles);
     [[nodiscard]] double particle_mass() const;
+    /// Fills the shape: sets the cell size and returns the places of the particles, in the shape's frame, m.
+    Result<std::vector<Vec3>> fill(const LiquidDefinition& definition);
 
     physics::World& world_;
     Liquids& liquids_;
@@ -58,6 +62,7 @@ private:
     Vec3 force_;                     ///< constant, N
     Liquids::Part* part_ = nullptr;  ///< null while it is disabled
     std::vector<Particle> kept_;     ///< state of the particles while it is disabled
+    bool has_run_ = false;           ///< whether kept_ is of a run, and not as it was filled
 };
 
 /// Null for points that are no liquid, and for a null pointer.

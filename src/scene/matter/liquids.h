@@ -16,8 +16,6 @@ public:
     /// A solver has one cell size: bodies of liquid use one fluid if their own cell sizes differ by no more than this
     /// factor.
     static constexpr double max_ratio = 1.6;
-    /// Maximum factor on the number of particles of a body with the other's cells: the ratio cubed, rounded up.
-    static constexpr std::size_t max_particles_ratio = 5;
 
     /// `world` outlives this.
     explicit Liquids(physics::World& world) : world_(world) {}
@@ -35,6 +33,9 @@ public:
     /// Adds particles of that cell size at these places (m, world), at rest; places in solids are left out. `matter`
     /// has neither volume nor velocity. The part is valid until remove().
     Result<Part*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
+    /// Adds particles that have run: of those in solids all that are about a cell from one that is not, since they
+    /// touch walls to rounding and a little beyond.
+    Result<Part*> add_again(const physics::FluidDefinition& matter, std::span<const Vec3> places);
     /// Removes its particles from the world.
     void remove(Part* part);
     /// Indices of its particles in the world's fluid_particles(part.fluid), in the order of their ids. Valid until the

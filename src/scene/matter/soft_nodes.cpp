@@ -43,6 +43,14 @@ bool SoftNodes::is_blocked(Vec3 place) const {
     });
 }
 
+Result<void> SoftNodes::begin_as(std::span<const Vec3> places, const physics::LastingDeformation& lasting) {
+    has_hung_ = true;
+    if (auto set = world_.set_lasting_deformation(handle_, lasting); !set) return set;
+    if (auto set = world_.set_nodes(handle_, places, std::vector<Vec3>(places.size())); !set) return set;
+    const auto& [linear, angular] = std::pair(definition().linear_velocity, definition().angular_velocity);
+    return linear == Vec3{} && angular == Vec3{} ? Result<void>{} : set_velocity(linear, angular);
+}
+
 // A slack rope starts in arcs, since on a straight line it would be compressed between its ends.
 Result<void> SoftNodes::hang(std::vector<HeldNode> held) {
     const auto* rope = std::get_if<physics::Rope>(&definition().matter);

@@ -50,6 +50,12 @@ public:
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go(physics::BodyHandle hand) override;
     Result<void> set_definition(const PointsDefinition& definition) override;
+    /// Instead of the initial state of the definition: its nodes at these places (m), one a node, and lasting
+    /// deformation; velocities are the definition's. Call before hang().
+    Result<void> begin_as(std::span<const Vec3> places, const physics::LastingDeformation& lasting);
+    [[nodiscard]] physics::LastingDeformation lasting_deformation() const {
+        return world_.lasting_deformation(handle_);
+    }
     /// Initial arcs of a slack rope between the nodes that pins hold at these places, clear of bodies. Call only once,
     /// when everything around it is there.
     Result<void> hang(std::vector<HeldNode> held);

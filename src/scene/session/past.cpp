@@ -47,12 +47,20 @@ void Marks::clear() {
     marks_.clear();
 }
 
+std::vector<std::uint32_t> Past::broken_at(EntityIndex rope, double time) const {
+    std::vector<std::uint32_t> segments;
+    for (const Break& broke : breaks)
+        if (broke.rope == rope && broke.time <= time) segments.push_back(broke.segment);
+    return segments;
+}
+
 void Past::clear() {
     take.clear();
     marks.clear();
     spawned.clear();
     removed.clear();
     fired.clear();
+    breaks.clear();
     if (shown) ++jumps;
     shown.reset();
 }

@@ -47,14 +47,22 @@ struct Past {
         Entity entity;
         double time = 0;  ///< s
     };
-    std::map<EntityIndex, Spawned> spawned;        ///< by actions, ever in this run
-    std::map<EntityIndex, double> removed;         ///< by actions, and when, s
-    std::map<std::uint32_t, double> fired;         ///< actions by id, and when first, s
+    std::map<EntityIndex, Spawned> spawned;  ///< by actions, ever in this run
+    std::map<EntityIndex, double> removed;   ///< by actions, and when, s
+    std::map<std::uint32_t, double> fired;   ///< actions by id, and when first, s
+    struct Break {
+        EntityIndex rope = 0;
+        std::uint32_t segment = 0;
+        double time = 0;  ///< s
+    };
+    std::vector<Break> breaks;                     ///< of ropes in this run, by time
     std::optional<Moment> shown;                   ///< empty: what is now
     std::uint64_t jumps = 0;                       ///< how often something else was shown
     double rate = 1;                               ///< simulated seconds in one of the clock's
     std::chrono::steady_clock::time_point told{};  ///< when clients were told of the take last
 
+    /// Segments of the rope that broke in this run until the time (s).
+    [[nodiscard]] std::vector<std::uint32_t> broken_at(EntityIndex rope, double time) const;
     /// For a new run. The rate stays.
     void clear();
 };

@@ -6,6 +6,7 @@
 #include "attributes/form.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
+#include "scene/session/kept_forms.h"
 #include "scene/session/session_state.h"
 
 namespace embody::scene {
@@ -68,7 +69,7 @@ void SessionState::tell_step() {
     // Effects of actions.
     for (const EntityIndex index : simulation->spawned()) {
         const Entity* entity = simulation->definition(index);
-        if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
+        if (entity) tell_spawned(*entity);
     }
     for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
     for (const ActionFired& fired : simulation->fired()) {
@@ -110,7 +111,14 @@ void SessionState::tell_message(const char* level, std::string text) {
     tell({{"event", "message"}, {"level", level}, {"text", std::move(text)}});
 }
 
+void SessionState::tell_spawned(const Entity& entity) {
+    json told = entity_to_json(entity);
+    tell_in_short(told);
+    tell({{"event", "spawned"}, {"entity", std::move(told)}});
+}
+
 void SessionState::tell_document(json changes) {
+    tell_changes_in_short(changes, document);
     tell({{"event", "document"},
           {"revision", ++revision},
           {"changes", std::move(changes)},

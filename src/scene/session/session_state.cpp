@@ -9,6 +9,7 @@
 #include "scene/file/scene_file.h"
 #include "scene/session/building.h"
 #include "scene/session/catalog_edit.h"
+#include "scene/session/kept_forms.h"
 
 namespace embody::scene {
 
@@ -165,6 +166,8 @@ std::size_t SessionState::sync_removals(std::span<const Change> changes) {
 Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
     look_now();
     put_in_document(changes);
+    // Kept forms fill the space that others leave free: all change together.
+    if (play_state == PlayState::stopped && change_kept_forms(changes)) return rebuild_or_revert(changes);
     std::size_t synced = 0;
     Result<void> done;
     try {
@@ -185,19 +188,24 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
     return done;
 }
 
-// Undo and redo lead to a document that existed before; no state of a run may prevent it.
-Result<void> SessionState::force_changes(const std::vector<Change>& changes) {
-    Result<void> done = run_changes(changes);
-    if (done.ok() || play_state == PlayState::stopped) return done;
-    put_in_document(changes);
+Result<void> SessionState::rebuild_or_revert(const std::vector<Change>& changes) {
     Result<void> made = rebuild_simulation();
     if (!made.ok()) {
         put_in_document(reversed(changes));
         return made;
     }
+    events.all_poses = true;
+    return made;
+}
+
+// Undo and redo lead to a document that existed before; no state of a run may prevent it.
+Result<void> SessionState::force_changes(const std::vector<Change>& changes) {
+    Result<void> done = run_changes(changes);
+    if (done.ok() || play_state == PlayState::stopped) return done;
+    put_in_document(changes);
+    if (Result<void> made = rebuild_or_revert(changes); !made.ok()) return made;
     tell_message("warning", "The running simulation could not follow and was reset: " + done.error().message());
     set_play_state(PlayState::stopped);
-    events.all_poses = true;
     return {};
 }
 
@@ -219,10 +227,12 @@ Result<void> SessionState::commit(Edit edit) {
     for (const Change& change : edit.changes)
         if (Result<void> allowed = check_lock(change); !allowed.ok()) return allowed;
     complete_building(*this, edit);
+    const std::vector<std::string> as_modelled = drop_unfit_forms(*this, edit);
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
     json told = told_changes(edit.changes);
     record(std::move(edit));
     keep_and_tell(std::move(told));
+    for (const std::string& text : as_modelled) tell_message("info", text);
     return {};
 }
 

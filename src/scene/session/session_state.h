@@ -120,6 +120,7 @@ struct SessionState {
     void tell(nlohmann::json message);
     void tell_to(ClientId recipient, nlohmann::json message);  ///< tells one client only
     void tell_message(const char* level, std::string text);
+    void tell_spawned(const Entity& entity);
     void tell_document(nlohmann::json changes);
     /// Tells each client that has said hello what its person can undo and redo now, where that has changed.
     void tell_histories();
@@ -146,6 +147,8 @@ private:
     Result<void> sync_heading(const HeadingChange& change);
     void put_in_document(const std::vector<Change>& changes);
     Result<void> run_changes(const std::vector<Change>& changes);
+    /// A new simulation of a document that has the changes; where there can be none the document gets them back.
+    Result<void> rebuild_or_revert(const std::vector<Change>& changes);
     Result<void> force_changes(const std::vector<Change>& changes);
     /// What a step of undo or redo changes in the document as it is.
     Result<std::vector<Change>> step_changes(const Edit& edit, std::vector<Change> recorded);

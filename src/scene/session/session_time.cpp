@@ -53,8 +53,11 @@ void SessionState::record_step() {
         past.fired.try_emplace(fired.id, time);
         past.marks.add({time, Mark::Kind::action, fired.sender, fired.receiver, 0, fired.name});
     }
-    for (const physics::RopeBreakEvent& broke : simulation->rope_breaks())
-        past.marks.add({time, Mark::Kind::rope, static_cast<EntityIndex>(broke.user_data)});
+    for (const physics::RopeBreakEvent& broke : simulation->rope_breaks()) {
+        const auto rope = static_cast<EntityIndex>(broke.user_data);
+        past.breaks.push_back({rope, broke.segment, time});
+        past.marks.add({time, Mark::Kind::rope, rope});
+    }
     const auto is_marked = [](const physics::ContactEvent& event) {
         return event.user_data_a != event.user_data_b && event.approach_speed >= marked_speed;
     };
@@ -95,7 +98,7 @@ void SessionState::show(std::optional<Moment> moment) {
         for (const EntityIndex index : came) {
             const auto spawned = past.spawned.find(index);
             const Entity* entity = spawned != past.spawned.end() ? &spawned->second.entity : document.find(index);
-            tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
+            tell_spawned(*entity);
         }
     }
     if (std::chrono::steady_clock::now() >= past.told + told_period) tell_take();
@@ -163,6 +166,7 @@ Result<std::vector<std::string>> SessionState::branch() {
     std::erase_if(past.spawned, [&](const auto& entry) { return entry.second.time > moment.time; });
     std::erase_if(past.removed, std::not_fn(is_before));
     std::erase_if(past.fired, std::not_fn(is_before));
+    std::erase_if(past.breaks, [&](const Past::Break& broke) { return broke.time > moment.time; });
     past.marks.add({moment.time, Mark::Kind::branch});
     ++past.jumps;
     show({});

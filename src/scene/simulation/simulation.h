@@ -20,6 +20,7 @@
 namespace embody::scene {
 
 struct FormCache;
+struct EntityMoment;
 struct EntityMotion;
 struct Moment;
 
@@ -152,6 +153,12 @@ public:
     /// Actions that exist already keep their state; new ones start.
     void set_actions(const std::vector<Action>& actions);
 
+    /// The form of an entity's points as they are now, with which a document can begin: null where it is one body, is
+    /// disabled, or is as modelled. The one that it began with where it still has that.
+    [[nodiscard]] SharedOptional<KeptForm> kept_form(EntityIndex entity) const;
+    /// The same as the points were at a moment of a take, with the segments that were broken then; without plastic
+    /// strain, which a take has not.
+    [[nodiscard]] SharedOptional<KeptForm> kept_form(const EntityMoment& was, std::vector<std::uint32_t> broken) const;
     /// Calls with every entity that is in the world, ascending.
     void visit(const std::function<void(const EntityMotion&)>& look) const;
     /// What actions had done in a run until a moment of it.

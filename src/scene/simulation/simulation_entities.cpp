@@ -47,6 +47,12 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     described.form = definitions.points.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
+    if (described.form.has_points && entity.kept) {
+        if (const Result<void> fits = check_kept(*entity.kept, described.form.kept_fit); !fits.ok()) {
+            described.definition.kept.reset();
+            described.form.note = "begins as modelled, because " + fits.error().where + " " + fits.error().why;
+        }
+    }
     if (!described.form.has_points) described.shape_key = scene::shape_key(entity, attributes);
     return described;
 }
@@ -81,6 +87,12 @@ Result<void> Simulation::State::put_points(LiveEntity& entity) {
     Result<std::unique_ptr<MovingPoints>> points = make_points(*world, liquids, definition.value());
     if (!points.ok()) return points.error();
     entity.points = std::move(points).value();
+    SoftNodes* soft = as_soft(entity.points.get());
+    if (soft != nullptr && entity.definition.kept) {
+        std::vector<Vec3> places = places_of(*entity.definition.kept);
+        for (Vec3& place : places) place = transform_point(entity.definition.pose, place);
+        if (Result<void> put = soft->begin_as(places, lasting_of(*entity.definition.kept)); !put.ok()) return put;
+    }
     if (const auto* grains = std::get_if<GrainDefinition>(&definition.value()))
         finest_grain = std::min(finest_grain, grains->diameter);
     const auto* liquid = std::get_if<LiquidDefinition>(&definition.value());

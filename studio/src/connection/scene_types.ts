@@ -9,6 +9,12 @@ export interface Pose {
   rotation?: Quaternion;
 }
 
+/** What the server tells of a kept form; GET /scene.json has all of it. */
+export interface KeptPoints {
+  /** How many nodes, grains or drops it places. */
+  points: number;
+}
+
 interface RoundLengths {
   radius: number;
   half_height: number;
@@ -203,6 +209,8 @@ export interface Entity {
   group?: string;
   /** of a thing of kind `soft`, `cloth` or `rope`: where it is held */
   pins?: Pin[];
+  /** of a thing that is not one body: the form with which a run begins, as *Keep* found it; null: as modelled */
+  kept?: KeptPoints | null;
   /** whether its pose, size and existence are kept from edits by hand */
   locked?: boolean;
   /** of a lamp */

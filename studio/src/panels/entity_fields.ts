@@ -59,11 +59,12 @@ export class EntityFields {
     const card = single?.model ? modelCard(this.parts, single.model) : null;
     const title = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, t("{{count}} entities", { count: entities.length }));
     const padlock = this.padlock();
-    this.rows.push(padlock);
+    const form = this.formLine();
+    this.rows.push(padlock, form);
     const group = single ? "" : outermostGroup(entities[0]!.group);
     const isGroup = group !== "" && entities.every((entity) => outermostGroup(entity.group) === group);
     const hint = isGroup ? element("p", { class: "note", "data-testid": "group-hint" }, t("Group “{{group}}”. Alt and a click select one of them alone.", { group })) : null;
-    this.head.replaceChildren(...[element("div", { class: "entity-head" }, title, padlock.root), hint, card].filter((each) => each !== null));
+    this.head.replaceChildren(...[element("div", { class: "entity-head" }, title, padlock.root), hint, card, form.root].filter((each) => each !== null));
     this.root.replaceChildren(
       foldingGroup(this.parts.preferences, "entity.place", t("Place and size"), true, ...shown.map((row) => row.root)),
       foldingGroup(this.parts.preferences, "entity.start", t("Start and forces"), false, ...start.map((row) => row.root)),
@@ -148,6 +149,14 @@ export class EntityFields {
   private scaleRow(): Row {
     const field = numberField(t("Scale"), "", (scale) => this.resize(() => ({ scale })), { step: 0.05, each: (change) => this.resize((entity) => ({ scale: change(entity.scale ?? 1) })) });
     return { root: row(t("Scale"), field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
+  }
+
+  /** Shown where a run has left its form: folds, dents, heaps, puddles. */
+  private formLine(): Row {
+    const kept = () => this.entities().filter((entity) => entity.kept);
+    const forget = element("button", { "data-testid": "forget-form", title: t("As modelled again, where it lies"), onclick: () => this.changeEach(kept(), () => ({ kept: null })) }, t("Forget"));
+    const root = element("div", { class: "form-line", "data-testid": "kept-form" }, element("span", {}, t("Form kept from a run")), forget);
+    return { root, update: () => show(root, kept().length > 0) };
   }
 
   private colorRow(): Row {

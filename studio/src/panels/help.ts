@@ -41,7 +41,7 @@ const MATTER: readonly (readonly [string, string])[] = [
   [t("Category"), t("of a primitive, such as honey, curtain, gravel: it takes kind and numbers of that")],
   [t("Pins"), t("hold edges, corners, ends or a place you click on; by the world or by another thing")],
   [t("Wind"), t("and gusts are under Air, with nothing selected")],
-  [t("Keep poses"), t("keeps where things lie, not dents, folds, heaps or puddles")],
+  [t("Settle"), t("keeps where things lie, and their folds, dents, heaps and puddles")],
 ];
 
 /** Mouse, keys and colours; a key can be changed by clicking on it. */

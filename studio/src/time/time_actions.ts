@@ -12,7 +12,7 @@ export function timeActions(parts: Pick<Parts, "server" | "notices" | "document"
   const looksBack = () => take.state.shown !== null;
   return [
     { id: "time.branch", label: t("Branch from here: forget what came after and go on from this moment"), short: t("Branch from here"), group: t("Time"), keys: [], icon: "branch", possible: looksBack, run: () => void branch(parts) },
-    { id: "time.keep", label: t("Keep this moment: its poses become the scene's"), short: t("Keep this moment"), group: t("Time"), keys: [], icon: "keep", possible: () => take.isThere, run: keep },
+    { id: "time.keep", label: t("Keep this moment: the scene begins as it was then"), short: t("Keep this moment"), group: t("Time"), keys: [], icon: "keep", possible: () => take.isThere, run: keep },
     { id: "time.plots", label: t("Plot the selected things over the run"), short: t("Plots"), group: t("Time"), keys: [], icon: "plot", possible: () => take.isThere, on: () => preferences.get("plots"), run: () => preferences.set("plots", !preferences.get("plots")) },
     { id: "time.film", label: t("Make a film of the run…"), short: t("Film…"), group: t("Time"), keys: [], icon: "film", possible: () => take.isThere, run: () => openFilm(parts, () => recorder.open()) },
     { id: "time.record", label: t("Record what I do…"), group: t("Time"), keys: [], icon: "film", on: () => recorder.isRunning, run: () => (recorder.isRunning ? void recorder.end() : recorder.open()) },

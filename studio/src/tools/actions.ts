@@ -172,18 +172,17 @@ function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" 
     },
     { id: "simulation.step", needs: "run", label: t("One step"), group: t("Simulation"), keys: ["."], icon: "step", repeats: true, run: () => void parts.server.command("simulation.step", { count: 1 }) },
     { id: "simulation.reset", needs: "run", label: t("Back to the start"), group: t("Simulation"), keys: ["Shift+Space", "Home"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
-    { id: "simulation.keep", needs: "edit", label: t("Settle: keep these poses as the scene"), group: t("Simulation"), keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
+    { id: "simulation.keep", needs: "edit", label: t("Settle: the scene begins as things are now"), group: t("Simulation"), keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
   ];
 }
 
-export async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document" | "entities">): Promise<void> {
+export async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document">): Promise<void> {
   if (!(await parts.server.command("simulation.keep", {}))) return;
-  const { document, entities } = parts;
-  const changeForm = [...document.entities.keys()].some((index) => entities.softs.has(index) || entities.clouds.of(index));
+  const hasForms = [...parts.document.entities.values()].some((entity) => entity.kept);
   parts.notices.tell({
     level: "info",
-    text: t("The present poses are now the scene's; undo takes them back"),
-    ...(changeForm && { remedy: t("Of soft things, cloth and ropes the place is kept, not dents and folds; grains and liquids start as before.") }),
+    text: t("The scene begins as things are now; undo takes that back"),
+    ...(hasForms && { remedy: t("Folds, dents, heaps and puddles are kept, too; “Forget” among a thing's values makes it as modelled again.") }),
   });
 }
 

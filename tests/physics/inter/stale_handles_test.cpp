@@ -134,6 +134,9 @@ TEST_F(StaleHandles, OfDeformablesAreRefused) {
         expect_refused("deformable", world_->set_nodes(gone, nodes, nodes));
         expect_refused("deformable", world_->set_deformable(gone, definition));
         expect_refused("deformable", world_->set_attachments(gone, {}));
+        expect_refused("deformable", world_->set_lasting_deformation(gone, {}));
+        EXPECT_TRUE(world_->lasting_deformation(gone).plastic_strain.empty() &&
+                    world_->lasting_deformation(gone).broken_segments.empty());
         EXPECT_EQ(world_->deformable(gone), nullptr);
         EXPECT_TRUE(world_->node_positions(gone).empty() && world_->node_velocities(gone).empty() &&
                     world_->node_masses(gone).empty() && world_->rope_tensions(gone).empty() &&

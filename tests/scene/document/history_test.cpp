@@ -53,6 +53,27 @@ TEST(History, TheOldestStepsGoWhereAllTakeTooMuch) {
     EXPECT_LT(history.bytes(), before - 5 * bytes_of(PoseChange{}) * 300);
 }
 
+TEST(History, AKeptFormCountsWhereItComesAndGoesAlone) {
+    Entity before, after;
+    KeptForm form;
+    form.places.values.resize(30'000);
+    after.kept = form;
+    const auto edit = [](const Entity& from, const Entity& to) {
+        Edit made;
+        made.person = 1;
+        made.changes.emplace_back(change_of(from, to));
+        return made;
+    };
+    History history;
+    history.add(edit(before, after));
+    const std::size_t once = history.bytes(), size = form.places.values.size() * sizeof(double);
+    EXPECT_GT(once, size);
+    for (int i = 0; i < 100; ++i) history.add(edit(after, after));
+    EXPECT_LT(history.bytes(), once + 100 * 2000);
+    history.add(edit(after, before));
+    EXPECT_GT(history.bytes(), 2 * size);
+}
+
 TEST(History, AStepLargerThanAllMayTakeStays) {
     History history(megabyte);
     history.add(moves(1, 10));

@@ -168,7 +168,7 @@ TEST_F(SessionTest, PlayPauseStepResetAndKeep) {
     run("simulation.keep");
     EXPECT_NEAR(session_->document().find(box)->pose.position.y, 0.25, 0.02);
     EXPECT_NEAR(where(box).y, 0.25, 0.02);
-    EXPECT_EQ(run("edit.undo")["undone"], "Keep poses");
+    EXPECT_EQ(run("edit.undo")["undone"], "Keep poses and forms");
     EXPECT_EQ(document(), before);
     EXPECT_EQ(where(box).y, 3);
 }

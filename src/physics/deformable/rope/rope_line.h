@@ -60,6 +60,7 @@ public:
     /// Tension of each segment, from node k to k + 1, N; below zero: compression. 0 where it is broken.
     [[nodiscard]] std::span<const double> tensions() const { return tensions_; }
     [[nodiscard]] bool is_broken(std::size_t segment) const { return segments_[segment].is_broken; }
+    void set_broken(std::size_t segment, bool is_broken) { segments_[segment].is_broken = is_broken; }
     /// Segments that broke in the last substep.
     struct Break {
         std::uint32_t segment = 0;

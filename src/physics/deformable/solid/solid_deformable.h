@@ -73,6 +73,12 @@ public:
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
     /// Takes over the plastic deformation of another solid of as many nodes and tetrahedra.
     void take_plastic_strain(const SolidDeformable& other) { elements_.take_plastic_strain(other.elements_); }
+    /// As of SolidElements.
+    [[nodiscard]] std::vector<std::array<double, 5>> plastic_strain() const { return elements_.plastic_strain(); }
+    void set_plastic_strain(std::span<const std::array<double, 5>> strains) {
+        elements_.set_plastic_strain(strains);
+        elastic_energy_.reset();
+    }
     /// Takes all velocities away.
     void rest();
     /// Puts its nodes back to where they were, at rest.

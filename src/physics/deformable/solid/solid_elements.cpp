@@ -301,13 +301,40 @@ void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) 
     const double stress = 2 * mu_ * std::sqrt(1.5 * squares(elastic));
     if (!(stress > yield_stress_)) return;
     plastic += (1 - yield_stress_ / stress) * elastic;
-    const double strain = std::sqrt(squares(plastic)), most = settings_.max_plastic_strain;
-    if (strain > most) plastic = (most / strain) * plastic;
+    limit_strain(plastic);
 }
 
 void SolidElements::take_plastic_strain(const SolidElements& other) {
     plastic_ = other.plastic_;
     node_plastic_ = other.node_plastic_;
+}
+
+std::vector<std::array<double, 5>> SolidElements::plastic_strain() const {
+    std::vector<std::array<double, 5>> strains;
+    bool has_flowed = false;
+    for (const std::vector<Mat3>* list : {&plastic_, &node_plastic_}) {
+        for (const Mat3& p : *list) {
+            strains.push_back({p(0, 0), p(1, 1), p(0, 1), p(0, 2), p(1, 2)});
+            has_flowed = has_flowed || squares(p) > 0;
+        }
+    }
+    return has_flowed ? strains : std::vector<std::array<double, 5>>();
+}
+
+void SolidElements::set_plastic_strain(std::span<const std::array<double, 5>> strains) {
+    std::size_t next = 0;
+    for (std::vector<Mat3>* list : {&plastic_, &node_plastic_}) {
+        for (Mat3& plastic : *list) {
+            const auto [xx, yy, xy, xz, yz] = strains.empty() ? std::array<double, 5>{} : strains[next++];
+            plastic = {{xx, xy, xz}, {xy, yy, yz}, {xz, yz, -(xx + yy)}};
+            limit_strain(plastic);
+        }
+    }
+}
+
+void SolidElements::limit_strain(Mat3& plastic) const {
+    const double strain = std::sqrt(squares(plastic)), most = settings_.max_plastic_strain;
+    if (strain > most) plastic = (most / strain) * plastic;
 }
 
 void SolidElements::reset_rotations(Quat rotation) {

@@ -54,6 +54,10 @@ public:
     bool flow(std::span<const Vec3> position);
     /// Takes over the plastic strain of another solid of as many nodes and tetrahedra.
     void take_plastic_strain(const SolidElements& other);
+    /// As in LastingDeformation; empty where nothing has flowed.
+    [[nodiscard]] std::vector<std::array<double, 5>> plastic_strain() const;
+    /// Of all tetrahedra and nodes, or empty: none. What is beyond the maximum is shortened to it.
+    void set_plastic_strain(std::span<const std::array<double, 5>> strains);
     /// Finds the rotations anew for nodes that were placed elsewhere.
     void reset_rotations(Quat rotation);
 
@@ -73,6 +77,7 @@ private:
     [[nodiscard]] Mat3 stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
                               double damping_rate) const;
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
+    void limit_strain(Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
     [[nodiscard]] Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const;
     void find_edges();

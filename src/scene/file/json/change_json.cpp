@@ -53,10 +53,14 @@ Result<Change> read_removal(const std::string& op, const json& change, const std
     return Change(EntityChange{std::move(gone), std::nullopt});
 }
 
-Result<Change> read_entity(const json& change, const std::string& where) {
+bool has_same_kept(const json& change) { return change.contains("same_kept") && change["same_kept"] == true; }
+
+Result<Change> read_entity(const json& change, const std::string& where, const Document& document) {
     Result<Entity> entity = entity_from_json(change.value("entity", json()), where + ".entity");
     if (!entity.ok()) return entity.error();
     if (entity.value().index == 0) return Error{where + ".entity.index", "is missing"};
+    if (const Entity* present = has_same_kept(change) ? document.find(entity.value().index) : nullptr)
+        entity.value().kept = present->kept;
     return Change(EntityChange{std::nullopt, std::move(entity).value()});
 }
 
@@ -94,7 +98,7 @@ Result<Change> read_heading(const json& change, const std::string& where, const 
 // A change for the document as those before it leave it.
 Result<Change> read_change(const json& change, const std::string& where, const Document& document) {
     const std::string op = change["op"];
-    if (op == "entity") return read_entity(change, where);
+    if (op == "entity") return read_entity(change, where, document);
     if (op.ends_with("_removed")) return read_removal(op, change, where);
     if (op == "pose") return read_pose(change, where, document);
     if (op == "settings") return read_heading(change, where, document);
@@ -116,7 +120,11 @@ Result<Change> read_change(const json& change, const std::string& where, const D
 json change_to_json(const Change& change, const Document& document) {
     if (const auto* entity = std::get_if<EntityChange>(&change)) {
         if (!entity->after) return {{"op", "entity_removed"}, {"index", entity->before->index}};
-        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(entity->after->index))}};
+        Entity present = *document.find(entity->after->index);
+        const bool is_same = entity->before && present.kept && entity->before->kept.is_copy_of(present.kept);
+        if (!is_same) return {{"op", "entity"}, {"entity", entity_to_json(present)}};
+        present.kept.reset();
+        return {{"op", "entity"}, {"entity", entity_to_json(present)}, {"same_kept", true}};
     }
     if (const auto* pose = std::get_if<PoseChange>(&change))
         return {{"op", "pose"}, {"index", pose->index}, {"pose", transform_to_json(pose->after)}};
@@ -144,7 +152,7 @@ Result<void> apply_changes(Document& document, const json& changes) {
         const std::string where = element_path("changes", i);
         if (!changes[i].is_object() || !changes[i].contains("op") || !changes[i]["op"].is_string())
             return Error{where, "has no \"op\""};
-        if (changes[i]["op"] != kind) apply_row();
+        if (changes[i]["op"] != kind || has_same_kept(changes[i])) apply_row();
         kind = changes[i]["op"];
         Result<Change> change = read_change(changes[i], where, document);
         if (!change.ok()) return change.error();

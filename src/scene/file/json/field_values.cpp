@@ -2,6 +2,7 @@
 #include "scene/file/json/field_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -29,6 +30,7 @@ void write_value(json& object, const char* name, int value) { object[name] = val
 void write_value(json& object, const char* name, std::uint32_t value) { object[name] = value; }
 void write_value(json& object, const char* name, double value) { object[name] = value; }
 void write_value(json& object, const char* name, const std::string& value) { object[name] = value; }
+void write_value(json& object, const char* name, const std::vector<std::uint32_t>& values) { object[name] = values; }
 void write_value(json& object, const char* name, Finish value) {
     object[name] = finish_names[static_cast<std::size_t>(value)];
 }
@@ -50,6 +52,22 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, double
 }
 
 void read_value(FieldReader& reader, const char* name, NumberRange, std::string& value) { reader.text(name, value); }
+void read_value(FieldReader& reader, const char* name, NumberRange range, std::vector<std::uint32_t>& values) {
+    const json* list = reader.list(name);
+    if (!list) return;
+    std::vector<std::uint32_t> read;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const std::string where = element_path(reader.path(name), i);
+        double number = 0;
+        if (!read_number(
+                (*list)[i], where, number, reader.error(),
+                {std::max(range.low, 0.0), std::min<double>(range.high, std::numeric_limits<std::uint32_t>::max())}))
+            return;
+        if (number != std::floor(number)) return reader.fail(where, "must be a whole number");
+        read.push_back(static_cast<std::uint32_t>(number));
+    }
+    values = std::move(read);
+}
 void read_value(FieldReader& reader, const char* name, NumberRange, Finish& value) {
     std::string word;
     if (!reader.text(name, word)) return;
@@ -198,6 +216,7 @@ void check_value(FieldReader& reader, const physics::WorldSettings& settings) {
 }
 
 void write_null(json& object, const char* name) { object[name] = nullptr; }
+bool is_null(const json& value) { return value.is_null(); }
 json& add_object(json& object, const char* name) { return object[name] = json::object(); }
 json& add_list(json& object, const char* name) { return object[name] = json::array(); }
 json& append_object(json& list) { return list.emplace_back(json::object()); }

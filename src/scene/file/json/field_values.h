@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scene/document/document.h"
 #include "scene/file/json/field_reader.h"
@@ -21,6 +22,8 @@ void write_value(nlohmann::json& object, const char* name, int value);
 void write_value(nlohmann::json& object, const char* name, std::uint32_t value);
 void write_value(nlohmann::json& object, const char* name, double value);
 void write_value(nlohmann::json& object, const char* name, const std::string& value);
+void write_value(nlohmann::json& object, const char* name, const std::vector<std::uint32_t>& values);
+void write_value(nlohmann::json& object, const char* name, const PackedNumbers& numbers);
 void write_value(nlohmann::json& object, const char* name, Finish value);
 void write_value(nlohmann::json& object, const char* name, const Vec3& value);
 void write_value(nlohmann::json& object, const char* name, const Transform& value);
@@ -36,6 +39,9 @@ void read_value(FieldReader& reader, const char* name, NumberRange range, int& v
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::uint32_t& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, double& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::string& value);
+void read_value(FieldReader& reader, const char* name, NumberRange range, std::vector<std::uint32_t>& values);
+/// Finite numbers, at most max_packed_numbers.
+void read_value(FieldReader& reader, const char* name, NumberRange range, PackedNumbers& numbers);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Finish& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Vec3& value);
 void read_value(FieldReader& reader, const char* name, NumberRange range, Transform& value);
@@ -53,6 +59,7 @@ void read_fields(FieldReader& reader, Geometry& geometry);
 // Checks conditions between fields.
 void check_value(FieldReader& reader, const Bounds& box);
 void check_value(FieldReader& reader, const OnSignal& signal);
+void check_value(FieldReader& reader, const KeptForm& kept);
 void check_value(FieldReader& reader, const physics::JointLimit& limit);
 void check_value(FieldReader& reader, const physics::WorldSettings& settings);
 
@@ -60,6 +67,7 @@ void check_value(FieldReader& reader, const physics::WorldSettings& settings);
 
 /// Writes null under the name; an empty object or list under the name; an empty object at the end of a list.
 void write_null(nlohmann::json& object, const char* name);
+bool is_null(const nlohmann::json& value);
 nlohmann::json& add_object(nlohmann::json& object, const char* name);
 nlohmann::json& add_list(nlohmann::json& object, const char* name);
 nlohmann::json& append_object(nlohmann::json& list);

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "foundation/shared_optional.h"
 #include "scene/document/field_list.h"
 #include "scene/file/json/field_reader.h"
 #include "scene/file/json/field_values.h"
@@ -36,6 +37,15 @@ void write_value(nlohmann::json& object, const char* name, const Value& value) {
 /// Null for an empty optional.
 template <class Value>
 void write_value(nlohmann::json& object, const char* name, const std::optional<Value>& value) {
+    if (value)
+        write_value(object, name, *value);
+    else
+        write_null(object, name);
+}
+
+/// Null for an empty one.
+template <class Value>
+void write_value(nlohmann::json& object, const char* name, const SharedOptional<Value>& value) {
     if (value)
         write_value(object, name, *value);
     else
@@ -83,6 +93,17 @@ void read_value(FieldReader& reader, const char* name, NumberRange, Value& value
 template <class Value>
 void read_value(FieldReader& reader, const char* name, NumberRange range, std::optional<Value>& value) {
     if (!reader.take(name) || !reader.ok()) return;
+    Value read{};
+    read_value(reader, name, range, read);
+    if (reader.ok()) value = std::move(read);
+}
+
+/// Replaces the whole value; null takes it away.
+template <class Value>
+void read_value(FieldReader& reader, const char* name, NumberRange range, SharedOptional<Value>& value) {
+    const nlohmann::json* field = reader.take(name);
+    if (!field || !reader.ok()) return;
+    if (is_null(*field)) return value.reset();
     Value read{};
     read_value(reader, name, range, read);
     if (reader.ok()) value = std::move(read);

@@ -8,6 +8,7 @@
 #include "scene/file/scene_file.h"
 #include "scene/session/catalog_edit.h"
 #include "scene/session/commands/commands.h"
+#include "scene/session/kept_forms.h"
 #include "scene/session/presence.h"
 #include "scene/session/scene_folders.h"
 
@@ -58,13 +59,15 @@ Result<json> hello(SessionState& state, const json& params) {
     const std::vector<EntityIndex> shown = state.shown_entities();
     for (const EntityIndex index : shown)
         if (const auto found = state.past.spawned.find(index); found != state.past.spawned.end())
-            spawned.push_back(entity_to_json(found->second.entity));
+            tell_in_short(spawned.emplace_back(entity_to_json(found->second.entity)));
     for (const Entity& entity : state.document.entities)
         if (!std::ranges::binary_search(shown, entity.index) && !state.simulation->is_waiting(entity.index))
             despawned.push_back(entity.index);
     const auto value = [](const std::optional<std::string>& text) { return text ? json(*text) : json(nullptr); };
+    json scene = document_to_json(state.document);
+    tell_scene_in_short(scene);
     return json{{"version", version_text},
-                {"scene", document_to_json(state.document)},
+                {"scene", std::move(scene)},
                 {"revision", state.revision},
                 {"simulation", state.simulation_json()},
                 {"take", state.take_json()},

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session/commands/commands.h"
 
-#include <map>
 #include <nlohmann/json.hpp>
+
+#include "scene/session/kept_forms.h"
 
 namespace embody::scene {
 
@@ -74,23 +75,12 @@ Result<json> reset(SessionState& state, const json& params) {
 
 Result<json> keep(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
-    // The poses that are shown: of now, or of a moment of the take.
-    std::map<EntityIndex, Transform> shown;
-    if (state.past.shown)
-        for (const EntityMoment& was : state.past.shown->entities) shown[was.motion.entity] = was.motion.pose;
-    else
-        for (const EntityIndex index : state.simulation->entities()) shown[index] = state.simulation->pose(index);
-    Edit edit = state.start_edit("Keep poses");
-    for (const Entity& entity : state.document.entities) {
-        const auto pose = shown.find(entity.index);
-        if (pose == shown.end() || entity.locked || pose->second == entity.pose) continue;
-        edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose->second});
-    }
-
-    // Now the document has these poses: the run is over.
+    Edit edit = edit_of_shown(state);
+    // Now the document begins with what was shown: the run is over.
     state.play_state = PlayState::stopped;
     if (Result<void> kept = state.commit(std::move(edit)); !kept.ok()) return kept.error();
-    if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made.error();
+    if (!state.simulation_is_pristine)
+        if (Result<void> made = state.rebuild_simulation(); !made.ok()) return made.error();
     state.tell(state.simulation_event());
     state.tell_take();
     state.events.all_poses = true;

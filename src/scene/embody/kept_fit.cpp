@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "scene/embody/kept_fit.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "foundation/state_hash.h"
+
+namespace embody::scene {
+
+namespace {
+
+void add(StateHash& hash, const std::string& word) {
+    hash.add(static_cast<std::uint64_t>(word.size()));
+    hash.add_bytes(word.data(), word.size());
+}
+
+// To nine digits: values that are computed may differ in the last ones between machines, and zeros in their sign where
+// another program has written the file.
+void add(StateHash& hash, double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", number == 0 ? 0.0 : number);
+    add(hash, std::string(text));
+}
+
+void add(StateHash& hash, const GeometryKey& key) {
+    hash.add(static_cast<std::uint64_t>(key.words.size()));
+    for (const std::string& word : key.words) add(hash, word);
+    hash.add(static_cast<std::uint64_t>(key.numbers.size()));
+    for (const double number : key.numbers) add(hash, number);
+}
+
+// The key has nothing of compounds.
+void add_children(StateHash& hash, const Geometry& geometry) {
+    const auto* shape = std::get_if<physics::ShapeDefinition>(&geometry);
+    const auto* compound = shape != nullptr ? std::get_if<physics::CompoundShape>(shape) : nullptr;
+    if (compound == nullptr) return;
+    for (const physics::CompoundChild& child : compound->children) {
+        add(hash, std::visit([](const auto& one) { return key_of(physics::ShapeDefinition(one)); }, child.shape));
+        const auto& [at, turn] = child.local;
+        for (const double number : {at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w}) add(hash, number);
+    }
+}
+
+template <class Elements>
+void add_elements(StateHash& hash, const Elements& elements) {
+    for (const auto& element : elements)
+        for (const std::uint32_t node : element) hash.add(std::uint64_t{node});
+}
+
+StateHash hash_of(const GeometryKey& key, const Geometry& geometry) {
+    StateHash hash;
+    add(hash, key);
+    add_children(hash, geometry);
+    return hash;
+}
+
+std::string digits(const StateHash& hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash.value()));
+    return text;
+}
+
+constexpr const char* as_modelled = "take the field kept out, or keep the form anew: the thing begins as modelled";
+
+}  // namespace
+
+KeptFit fit_of_particles(const GeometryKey& key, const Geometry& geometry, std::size_t budget, bool is_liquid) {
+    return {.fingerprint = digits(hash_of(key, geometry)), .max_points = budget, .is_liquid = is_liquid};
+}
+
+KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const catalog::SoftMesh& mesh) {
+    StateHash hash = hash_of(key, geometry);
+    add_elements(hash, mesh.mesh.tetrahedra);
+    const std::size_t nodes = mesh.mesh.nodes.size();
+    return {.fingerprint = digits(hash),
+            .min_points = nodes,
+            .max_points = nodes,
+            .strains = mesh.mesh.tetrahedra.size() + nodes};
+}
+
+KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const ThinForm& form) {
+    StateHash hash = hash_of(key, geometry);
+    if (const auto* line = std::get_if<LineForm>(&form)) {
+        const std::size_t nodes = line->nodes.size();
+        return {.fingerprint = digits(hash), .min_points = nodes, .max_points = nodes, .segments = nodes - 1};
+    }
+    const auto& sheet = std::get<attributes::SheetMesh>(form);
+    add_elements(hash, sheet.triangles);
+    return {.fingerprint = digits(hash), .min_points = sheet.nodes.size(), .max_points = sheet.nodes.size()};
+}
+
+Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
+    if (kept.fingerprint != fit.fingerprint)
+        return Error{"kept.fingerprint",
+                     "is of another form than the thing has now: its kind, geometry, scale or mesh is another one",
+                     as_modelled};
+    const std::size_t points = kept.places.values.size() / 3;
+    if (points < fit.min_points || points > fit.max_points) {
+        std::string count = std::to_string(fit.max_points);
+        if (fit.min_points != fit.max_points) count = std::to_string(fit.min_points) + " … " + count;
+        return Error{"kept.places", "must be of " + count + " points, got " + std::to_string(points), as_modelled};
+    }
+    const std::size_t strains = kept.plastic_strain.values.size() / numbers_per_strain;
+    if (strains != 0 && strains != fit.strains)
+        return Error{
+            "kept.plastic_strain",
+            "must be of " + std::to_string(fit.strains) + " tetrahedra and nodes, got " + std::to_string(strains),
+            as_modelled};
+    if (!kept.broken.empty() && kept.broken.back() >= fit.segments)
+        return Error{"kept.broken", "has a segment that the thing has not, which has " + std::to_string(fit.segments),
+                     as_modelled};
+    constexpr double min_cell_size = 1e-3;  // m, limit of the physics
+    if (fit.is_liquid != (kept.cell_size > 0) || (fit.is_liquid && kept.cell_size < min_cell_size))
+        return Error{"kept.cell_size",
+                     fit.is_liquid ? "of a liquid must be 0.001 … 1 m" : "is of a liquid, which this is not",
+                     as_modelled};
+    return {};
+}
+
+std::vector<Vec3> places_of(const KeptForm& kept) {
+    const std::vector<double>& values = kept.places.values;
+    std::vector<Vec3> places;
+    places.reserve(values.size() / 3);
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3) places.push_back({values[i], values[i + 1], values[i + 2]});
+    return places;
+}
+
+physics::LastingDeformation lasting_of(const KeptForm& kept) {
+    physics::LastingDeformation lasting;
+    const std::vector<double>& values = kept.plastic_strain.values;
+    for (std::size_t i = 0; i + numbers_per_strain <= values.size(); i += numbers_per_strain) {
+        auto& strain = lasting.plastic_strain.emplace_back();
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i), numbers_per_strain, strain.begin());
+    }
+    lasting.broken_segments = kept.broken;
+    return lasting;
+}
+
+PackedNumbers packed(const std::vector<Vec3>& places) {
+    PackedNumbers numbers;
+    numbers.values.reserve(3 * places.size());
+    for (const Vec3 place : places) numbers.values.insert(numbers.values.end(), {place.x, place.y, place.z});
+    return numbers;
+}
+
+PackedNumbers packed(const std::vector<std::array<double, numbers_per_strain>>& strains) {
+    PackedNumbers numbers;
+    numbers.values.reserve(numbers_per_strain * strains.size());
+    for (const auto& strain : strains) numbers.values.insert(numbers.values.end(), strain.begin(), strain.end());
+    return numbers;
+}
+
+}  // namespace embody::scene

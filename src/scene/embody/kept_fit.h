@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "foundation/result.h"
+#include "scene/document/kept_form.h"
+#include "scene/embody/form_cache.h"
+#include "scene/embody/points_definition.h"
+
+namespace embody::scene {
+
+/// What a kept form is like that belongs to an entity's points.
+struct KeptFit {
+    std::string fingerprint;  ///< hash of what the points are made from, 16 hexadecimal digits; empty: one body
+    std::size_t min_points = 1, max_points = 0;
+    std::size_t strains = 0;   ///< tetrahedra and nodes of a soft solid; 0: another matter
+    std::size_t segments = 0;  ///< of a rope
+    bool is_liquid = false;
+};
+
+/// Of grains or a liquid, from the key of their points and their geometry; at most `budget` points.
+KeptFit fit_of_particles(const GeometryKey& key, const Geometry& geometry, std::size_t budget, bool is_liquid);
+/// Of a deformable, with the elements of its mesh.
+KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const catalog::SoftMesh& mesh);
+KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const ThinForm& form);
+
+/// Whether the kept form belongs to these points; the error's `where` is its field.
+Result<void> check_kept(const KeptForm& kept, const KeptFit& fit);
+
+// Between the numbers of a kept form and their meaning.
+std::vector<Vec3> places_of(const KeptForm& kept);  ///< in the entity's frame, m
+physics::LastingDeformation lasting_of(const KeptForm& kept);
+PackedNumbers packed(const std::vector<Vec3>& places);
+PackedNumbers packed(const std::vector<std::array<double, numbers_per_strain>>& strains);
+
+}  // namespace embody::scene

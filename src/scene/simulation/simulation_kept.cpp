@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Forms of a run that a document keeps (docs/time.md).
+#include <algorithm>
+
+#include "scene/matter/fluid_body.h"
+#include "scene/matter/soft_nodes.h"
+#include "scene/simulation/moment.h"
+#include "scene/simulation/simulation_state.h"
+
+namespace embody::scene {
+
+namespace {
+
+constexpr double same_place = 1e-9;  // m: rounding of a pose that moves the points to and fro
+
+bool are_same_places(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    return std::ranges::equal(a, b, [](Vec3 one, Vec3 other) { return length(one - other) <= same_place; });
+}
+
+// `positions` in the world, `pose` of the entity's frame.
+SharedOptional<KeptForm> form_of(const LiveEntity& entity, std::vector<Vec3> positions, const Transform& pose,
+                                 const physics::LastingDeformation& lasting) {
+    for (Vec3& position : positions) position = inverse_transform_point(pose, position);
+    KeptForm form{.fingerprint = entity.form.kept_fit.fingerprint,
+                  .plastic_strain = packed(lasting.plastic_strain),
+                  .broken = lasting.broken_segments};
+    if (const FluidBody* liquid = as_liquid(entity.points.get())) form.cell_size = liquid->cell_size();
+
+    const SharedOptional<KeptForm>& before = entity.definition.kept;
+    if (before && before->plastic_strain == form.plastic_strain && before->broken == form.broken &&
+        are_same_places(places_of(*before), positions))
+        return before;
+    const SoftNodes* soft = as_soft(entity.points.get());
+    if (soft != nullptr && lasting.plastic_strain.empty() && lasting.broken_segments.empty() &&
+        are_same_places(soft->definition().nodes, positions))
+        return {};
+    form.places = packed(positions);
+    return form;
+}
+
+}  // namespace
+
+SharedOptional<KeptForm> Simulation::kept_form(EntityIndex index) const {
+    const LiveEntity* entity = state_->find(index);
+    if (!entity || !entity->points || !entity->definition.enabled) return {};
+    std::vector<Vec3> positions;
+    entity->points->read(positions);
+    if (positions.empty()) return {};
+    const SoftNodes* soft = as_soft(entity->points.get());
+    return form_of(*entity, std::move(positions), state_->pose_of(*entity),
+                   soft ? soft->lasting_deformation() : physics::LastingDeformation{});
+}
+
+SharedOptional<KeptForm> Simulation::kept_form(const EntityMoment& was, std::vector<std::uint32_t> broken) const {
+    const LiveEntity* entity = state_->find(was.motion.entity);
+    if (!entity || !entity->points || !entity->definition.enabled || !was.points) return {};
+    std::vector<Vec3> positions;
+    was.points->read(positions);
+    if (positions.empty()) return {};
+    return form_of(*entity, std::move(positions), was.motion.pose, {{}, std::move(broken)});
+}
+
+}  // namespace embody::scene
