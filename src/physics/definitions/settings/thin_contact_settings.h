@@ -22,8 +22,8 @@ struct ThinContactSettings {
     /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct at most a
     /// tenth a step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
-    /// Stiffness of a contact of sheets and ropes over that of the softer side's nodes where half the distance that they
-    /// keep is left; it grows with depth over distance. Test: Settings.AreNoticed.
+    /// Stiffness of a contact of sheets and ropes over that of the softer side's nodes where half the distance that
+    /// they keep is left; it grows with depth over distance. Test: Settings.AreNoticed.
     double depth_stiffness_factor = 0.3;
     /// Depth, over that distance, up to which it grows. Test: Settings.AreNoticed.
     double max_stiff_depth = 0.95;

@@ -53,9 +53,7 @@ public:
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
     /// Present energies, J. Contacts are taken over from another sheet of as many nodes.
-    void go_on_from(const ClothSheet& other) {
-        springs_.go_on_from(other.springs_);
-    }
+    void go_on_from(const ClothSheet& other) { springs_.go_on_from(other.springs_); }
     [[nodiscard]] double elastic_energy() const;
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }

@@ -113,8 +113,8 @@ std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) {
             const std::span<const std::uint32_t> nodes(points.node.data(), static_cast<std::size_t>(points.count));
             const auto of_first = nodes.first(static_cast<std::size_t>(points.count_first));
             const auto of_second = nodes.subspan(of_first.size());
-            if (has_any(candidate.is_swapped ? pair.tied_b : pair.tied_a, of_first) ||
-                has_any(candidate.is_swapped ? pair.tied_a : pair.tied_b, of_second) ||
+            if (has_any(candidate.is_swapped ? pair.held_b : pair.held_a, of_first) ||
+                has_any(candidate.is_swapped ? pair.held_a : pair.held_b, of_second) ||
                 is_tangled(first, of_first, second, of_second))
                 continue;
             points.weight = impact->weight;
@@ -155,7 +155,8 @@ void CrossingGuard::hold(std::span<const double> compliance, std::span<Vec3> mov
             }
             if (pass < max_passes) continue;
             for (const ThinMember* member : {&first, &second}) {
-                for (std::uint32_t i = 1; i < member->surface.nodes->size(); ++i) join(member->first, member->first + i);
+                for (std::uint32_t i = 1; i < member->surface.nodes->size(); ++i)
+                    join(member->first, member->first + i);
             }
         }
         if (!has_joined) return;

@@ -187,7 +187,8 @@ void PairSprings::add(const Search& search, const Found& found) {
     if (gap < 0) {
         const double depth = std::min(-gap / search.radius, settings.max_stiff_depth);
         const double stiffness = std::min(own_stiffness[0], own_stiffness[1]);
-        spring.stiffness = std::max(spring.stiffness, settings.depth_stiffness_factor * stiffness * depth / (1 - depth));
+        spring.stiffness =
+            std::max(spring.stiffness, settings.depth_stiffness_factor * stiffness * depth / (1 - depth));
     }
     if (gap < 0) spring.returned = std::min(-settings.recovery_fraction * gap, settings.recovery_speed * h);
     spring.gap = gap < 0 ? -spring.returned : gap;

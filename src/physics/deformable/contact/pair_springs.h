@@ -34,8 +34,8 @@ using ThinContacts = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vect
 struct ThinMember {
     ThinSurface surface;
     std::uint32_t slot = 0;
-    std::uint32_t first = 0;   ///< number of its first node among those of all
-    std::vector<double> load;  ///< kg a node: of bodies that lie on it
+    std::uint32_t first = 0;            ///< number of its first node among those of all
+    std::vector<double> load;           ///< kg a node: of bodies that lie on it
     std::span<const double> stiffness;  ///< N/m a node, of it alone
 };
 /// Two members, by index, the lower slot first, with their candidates; or a sheet with itself.
@@ -43,7 +43,7 @@ struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;
     std::vector<ThinCandidate> candidates;
-    std::vector<bool> tied_a = {}, tied_b = {};  ///< nodes that a tie holds at the other; none: empty
+    std::vector<bool> held_a, held_b;  ///< nodes that are held at the other, by ties or one body; none: empty
 };
 
 /// Two features that would meet within a substep.

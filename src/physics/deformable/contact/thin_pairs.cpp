@@ -97,8 +97,9 @@ void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, 
         const std::size_t first = candidates.size();
         match(edges_a, edges_b, ThinFeature::edge_on_edge, false, workers, candidates);
         const auto follow = [](const ThinCandidate& candidate) { return candidate.second <= candidate.first + 1; };
-        candidates.erase(std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), follow),
-                         candidates.end());
+        candidates.erase(
+            std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), follow),
+            candidates.end());
         return;
     }
     const SweptFeatures nodes_a = sweep_a.nodes_in(region), nodes_b = sweep_b.nodes_in(region);

@@ -18,9 +18,9 @@ struct MovingFeatures {
 
 /// The moment at which two features are too near to go on.
 struct Impact {
-    double time = 0;                    ///< of the substep, 0 … 1
-    std::array<double, 4> weight{};     ///< as of ThinPoints: Σ weight x is the vector from the second to the first
-    Vec3 normal;                        ///< its direction then, unit
+    double time = 0;                 ///< of the substep, 0 … 1
+    std::array<double, 4> weight{};  ///< as of ThinPoints: Σ weight x is the vector from the second to the first
+    Vec3 normal;                     ///< its direction then, unit
 };
 
 /// When two features that move straight come so near that they might meet: nearer than a tenth of `distance` (m, > 0)

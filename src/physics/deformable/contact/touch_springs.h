@@ -103,6 +103,9 @@ double energy_of(const BodyInertia& inertia, const BodyMove& move);
 double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
                       std::span<const BodyMove> body_moves);
 
+/// One of these two ways to count a spring's energy.
+using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
+
 /// For each body, the fraction of the springs' push for these moves that it may get: 1 where the push moves it as in
 /// the solve, less where a solve that has not converged left stiff springs with far more.
 std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,

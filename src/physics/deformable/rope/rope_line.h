@@ -97,7 +97,6 @@ private:
     void add_curvature(std::size_t node);
     bool solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias);
     // The function that the iteration's step minimises: inertia, elastic energy, damping and springs of these moves, J.
-    using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
     [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
                                std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
                                SpringEnergy spring_energy = energy_of) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "foundation/task_pool.h"
@@ -97,8 +98,8 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies) {
             member.touch = record.rope()->touch();
         }
         seen_[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
-                   std::vector<double>(member.count, 0),
-                   record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness()};
+                    std::vector<double>(member.count, 0),
+                    record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness()};
     }
 }
 
@@ -146,7 +147,7 @@ void ThinGroupPart::begin_pairs(std::span<const TouchedBody> bodies) {
         const Member& member = members_[pair.a];
         ClothSheet* sheet = pair.a == pair.b ? member.record().cloth() : nullptr;
         if (sheet != nullptr) pair.candidates = sheet->near_layers(member.substep, world_.workers);
-        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.tied_a, pair.tied_b});
+        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.held_a, pair.held_b});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
     pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, carried_mass(bodies), settings});
@@ -191,9 +192,9 @@ void ThinGroupPart::gather_springs() {
     springs_.insert(springs_.end(), ties_.springs().begin(), ties_.springs().end());
 }
 
-// True where the springs that act have changed. The last solve's springs stay as they were in it, so that both sides
-// have the same force.
-bool ThinGroupPart::choose_again() {
+// True where the springs that act have changed. Those of the last solve (`is_last`) stay as they were in it, so that
+// both sides have the same force.
+bool ThinGroupPart::choose_again(bool is_last) {
     bool has_changed = false;
     std::vector<TouchSprings> touch;
     for (const Member& member : members_) {
@@ -202,7 +203,7 @@ bool ThinGroupPart::choose_again() {
     }
     PairSprings pairs = pairs_;
     has_changed |= pairs.choose(moves_, false);
-    if (!has_changed) return false;
+    if (!has_changed || is_last) return has_changed;
     for (std::size_t m = 0; m < members_.size(); ++m) members_[m].touch = std::move(touch[m]);
     pairs_ = std::move(pairs);
     return true;
@@ -247,12 +248,13 @@ std::vector<double> ThinGroupPart::compliances() const {
 }
 
 // The function that the solves minimise: inertia, elastic energy, damping and springs of the moves, J.
-double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
+double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias,
+                             SpringEnergy spring_energy) {
     double sum = 0;
     for (std::size_t m = 0; m < sheets_; ++m) sum += energy_of(sheets[m], part(moves_, members_[m]));
     for (const Member& member : ropes()) sum += member.record().rope()->energy(member.substep, part(moves_, member));
     for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves_[b]);
-    for (const TouchSpring& spring : springs_) sum += energy_of(spring, moves_, body_moves_);
+    for (const TouchSpring& spring : springs_) sum += spring_energy(spring, moves_, body_moves_);
     return sum;
 }
 
@@ -263,7 +265,7 @@ double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, 
     const double min_fraction = world_.settings.solver.deformable.rope.min_step_fraction;
     const std::vector<Vec3> full = std::exchange(moves_, from_);
     const std::vector<BodyMove> body_full = std::exchange(body_moves_, body_from_);
-    const double before = energy(sheets, inertias), enough = before + rounding * std::fabs(before);
+    const double before = energy(sheets, inertias, energy_of), enough = before + rounding * std::fabs(before);
     for (double fraction = 1; fraction > min_fraction; fraction /= 2) {
         for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = from_[i] + fraction * (full[i] - from_[i]);
         for (std::size_t b = 0; b < body_moves_.size(); ++b) {
@@ -271,7 +273,7 @@ double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, 
             body_moves_[b] = {from.shift + fraction * (body_full[b].shift - from.shift),
                               from.turn + fraction * (body_full[b].turn - from.turn)};
         }
-        if (energy(sheets, inertias) <= enough) break;
+        if (energy(sheets, inertias, energy_of) <= enough) break;
     }
     double travel = 0;
     for (const Member& member : ropes()) {
@@ -298,6 +300,10 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
     std::vector<SheetSystem> sheets;
     for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth()->system());
     int meeting_solves = 0;
+    // Of solves with ropes that do not converge, the moves with the least energy of contacts as they then press.
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<Vec3> best_moves;
+    std::vector<BodyMove> best_body_moves;
     for (int solves = 1;; ++solves) {
         std::vector<LineSystem> lines;
         for (const Member& member : ropes())
@@ -309,7 +315,21 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
                                                                     body_moves_, world_.workers);
         if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
-        if (solves < max_solves && (choose_again() || travel >= move_tolerance)) continue;
+        const bool is_last_solve = solves >= max_solves;
+        const bool has_changed = choose_again(is_last_solve) || travel >= move_tolerance;
+        if (has_changed && has_ropes()) {
+            if (const double left = energy(sheets, inertias, energy_pressed); left < least) {
+                least = left;
+                best_moves = moves_;
+                best_body_moves = body_moves_;
+            } else if (is_last_solve) {
+                moves_ = best_moves;
+                body_moves_ = best_body_moves;
+                choose_again(false);
+                gather_springs();
+            }
+        }
+        if (has_changed && !is_last_solve) continue;
         const std::vector<ThinMeeting> meetings = CrossingGuard(seen_, guarded_, world_.workers).find(moves_);
         if (meetings.empty()) return Outcome::solved;
         const bool is_last = meeting_solves++ == settings.cloth.max_meeting_solves;
@@ -318,6 +338,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
             return Outcome::too_fast;
         if (is_last) return Outcome::solved;
         add_contacts(meetings);
+        least = std::numeric_limits<double>::infinity();
     }
 }
 

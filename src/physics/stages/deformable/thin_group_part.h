@@ -44,9 +44,10 @@ private:
     [[nodiscard]] bool are_finite() const;
     [[nodiscard]] bool is_too_fast(const ThinMeeting& meeting) const;
     void gather_springs();
-    [[nodiscard]] double energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
+    [[nodiscard]] double energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias,
+                                SpringEnergy spring_energy);
     double go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
-    bool choose_again();
+    bool choose_again(bool is_last);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
@@ -58,8 +59,8 @@ private:
     std::vector<Member> members_;       // sheets first
     std::vector<std::uint32_t> place_;  // of the group's members among these
     std::size_t sheets_ = 0;
-    std::vector<ThinMember> seen_;  // the members as others see them
-    std::vector<ThinPair> met_;     // pairs of members, of a sheet with itself too
+    std::vector<ThinMember> seen_;              // the members as others see them
+    std::vector<ThinPair> met_;                 // pairs of members, of a sheet with itself too
     std::vector<CrossingGuard::Pair> guarded_;  // the same
     PairSprings pairs_;                         // of `met_`
     TieSprings ties_;

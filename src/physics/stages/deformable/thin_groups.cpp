@@ -21,39 +21,54 @@ namespace embody::physics::stages {
 
 namespace {
 
-// The nodes of `own` that a tie between the two holds.
-std::vector<bool> tied_nodes(const DeformableAccess& world, const DeformableRecord& own,
+// Half the distance at which the middles of two members touch, m.
+double radius_of(const DeformableRecord& record) {
+    const Cloth* cloth = std::get_if<Cloth>(&record.definition.matter);
+    return std::max(record.definition.contact_radius, cloth != nullptr ? cloth->thickness / 2 : 0);
+}
+
+// The nodes of `own` that are held at the other: by a tie, or by anchors on one body that are nearer to each other than
+// the two may come. None: empty.
+std::vector<bool> held_nodes(const DeformableAccess& world, const DeformableRecord& own,
                              const DeformableRecord& other) {
-    std::vector<bool> is_tied(own.nodes().size(), false);
+    std::vector<bool> is_held;
+    const auto hold = [&](std::uint32_t node) {
+        is_held.resize(own.nodes().size(), false);
+        is_held[node] = true;
+    };
     for (const Tie& tie : own.definition.ties) {
-        if (world.deformables.records.find(tie.other) == &other) is_tied[tie.node] = true;
+        if (world.deformables.records.find(tie.other) == &other) hold(tie.node);
     }
     for (const Tie& tie : other.definition.ties) {
         if (world.deformables.records.find(tie.other) != &own) continue;
         for (std::size_t k = 0; k < 3; ++k) {
-            if (tie.weight[k] > 0) is_tied[tie.other_nodes[k]] = true;
+            if (tie.weight[k] > 0) hold(tie.other_nodes[k]);
         }
     }
-    return is_tied;
+    const double radius = radius_of(own) + radius_of(other);
+    for (const Attachment& attachment : own.definition.attachments) {
+        const auto is_near = [&](const Attachment& of_other) {
+            return of_other.body == attachment.body && length(of_other.anchor - attachment.anchor) < radius;
+        };
+        if (std::ranges::any_of(other.definition.attachments, is_near)) hold(attachment.node);
+    }
+    return is_held;
 }
 
-// Features that a tie holds together do not touch as well.
-void leave_out_tied(const DeformableAccess& world, const DeformableRecord& a, const ThinSurface& on_a,
-                    const DeformableRecord& b, const ThinSurface& on_b, std::vector<ThinCandidate>& candidates) {
-    if (a.definition.ties.empty() && b.definition.ties.empty()) return;
-    const std::vector<bool> tied_a = tied_nodes(world, a, b), tied_b = tied_nodes(world, b, a);
+// Features that are held together do not touch as well.
+void leave_out_held(const ThinSurface& on_a, const std::vector<bool>& held_a, const ThinSurface& on_b,
+                    const std::vector<bool>& held_b, std::vector<ThinCandidate>& candidates) {
+    const auto has_held = [](const std::vector<bool>& held, std::span<const std::uint32_t> nodes) {
+        return !held.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return held[node]; });
+    };
     std::erase_if(candidates, [&](const ThinCandidate& candidate) {
         const bool is_swapped = candidate.is_swapped;
         const ThinSurface &one = is_swapped ? on_b : on_a, &two = is_swapped ? on_a : on_b;
-        const std::vector<bool>&tied_one = is_swapped ? tied_b : tied_a, &tied_two = is_swapped ? tied_a : tied_b;
-        const auto is_tied_one = [&](std::uint32_t node) { return tied_one[node]; };
-        const auto is_tied_two = [&](std::uint32_t node) { return tied_two[node]; };
-        const bool first = candidate.kind == ThinFeature::edge_on_edge
-                               ? std::ranges::any_of(one.edges[candidate.first], is_tied_one)
-                               : tied_one[candidate.first];
-        return first || (candidate.kind == ThinFeature::node_on_triangle
-                             ? std::ranges::any_of(two.triangles[candidate.second], is_tied_two)
-                             : std::ranges::any_of(two.edges[candidate.second], is_tied_two));
+        const std::vector<bool>&held_one = is_swapped ? held_b : held_a, &held_two = is_swapped ? held_a : held_b;
+        return (candidate.kind == ThinFeature::edge_on_edge ? has_held(held_one, one.edges[candidate.first])
+                                                            : has_held(held_one, {&candidate.first, 1})) ||
+               (candidate.kind == ThinFeature::node_on_triangle ? has_held(held_two, two.triangles[candidate.second])
+                                                                : has_held(held_two, two.edges[candidate.second]));
     });
 }
 
@@ -62,16 +77,16 @@ double pull_on(const DeformableAccess& world, const DeformableRecord& record) {
     return length(record.acceleration(world.settings.gravity));
 }
 
-// Candidates of two members whose bounds, extended by their travel, overlap.
-std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const DeformableRecord& a,
-                                         const DeformableRecord& b) {
-    std::vector<ThinCandidate> candidates;
+// Of two members whose bounds, extended by their travel, overlap: sets what is held together and the candidates.
+void find_candidates(const DeformableAccess& world, const DeformableRecord& a, const DeformableRecord& b,
+                     ThinPair& pair) {
     std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
     const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
     find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
-                         world.workers, candidates);
-    leave_out_tied(world, a, on_a, b, on_b, candidates);
-    return candidates;
+                         world.workers, pair.candidates);
+    pair.held_a = held_nodes(world, a, b);
+    pair.held_b = held_nodes(world, b, a);
+    leave_out_held(on_a, pair.held_a, on_b, pair.held_b, pair.candidates);
 }
 
 // m: a wider member has broken numbers; it will freeze, and others ignore it.
@@ -102,8 +117,10 @@ bool is_thin(const DeformableRecord& record) { return !record.solid() && record.
 // does not touch itself: the common solve does not include its twist.
 void add_own_pair(const DeformableAccess& world, std::uint32_t i, const DeformableRecord& record,
                   std::vector<ThinPair>& pairs) {
-    ThinPair pair{
-        i, i, friction_between(record.definition.material, record.definition.material, world.rigid.surface_pairs), {}};
+    ThinPair pair{.a = i,
+                  .b = i,
+                  .friction = friction_between(record.definition.material, record.definition.material,
+                                               world.rigid.surface_pairs)};
     if (record.rope()) {
         if (record.rope()->has_clamps()) return;
         pair.candidates = own_candidates_of(world, record);
@@ -148,9 +165,14 @@ bool advance_rope_alone(const DeformableAccess& world, const ThinGroup& group, T
         moves.push_back(record.nodes().position[i] - before.nodes().position[i]);
     std::vector<std::array<std::uint32_t, 2>> segments;
     ThinMember seen{surface_of(record, segments), record.slot, 0, {}, {}};
+    const auto touch = [&](const ThinCandidate& candidate) {
+        return length(nearest_points(seen.surface, seen.surface, candidate).away) < 2 * seen.surface.radius;
+    };
+    bool is_alone = std::ranges::none_of(group.pairs[0].candidates, touch);
     seen.surface.nodes = &before.nodes();
     const CrossingGuard::Pair self{0, 0, nullptr, {}, {}};
-    if (CrossingGuard(std::span(&seen, 1), std::span(&self, 1), world.workers).find(moves).empty()) {
+    is_alone = is_alone && CrossingGuard(std::span(&seen, 1), std::span(&self, 1), world.workers).find(moves).empty();
+    if (is_alone) {
         note_breaks(world, record);
         return true;
     }
@@ -268,7 +290,9 @@ bool wake_touched_thin(const DeformableAccess& world) {
             std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
             const ThinSurface a = surface_of(awake, segments_a), b = surface_of(sleeper, segments_b);
             const double pull = std::max(pull_on(world, awake), pull_on(world, sleeper));
-            if (!will_touch(a, b, candidates_of(world, awake, sleeper), h, pull)) continue;
+            ThinPair pair;
+            find_candidates(world, awake, sleeper, pair);
+            if (!will_touch(a, b, pair.candidates, h, pull)) continue;
             sleeper.is_asleep = false;
             sleeper.quiet_time = 0;
             has_woken = true;
@@ -290,14 +314,12 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
             const DeformableRecord &one = *thin[a].record, &two = *thin[b].record;
             if (!overlaps(bounds[a], bounds[b]) || !may_collide(one.definition, two.definition)) continue;
             if (!may_touch_others(bounds[a]) || !may_touch_others(bounds[b])) continue;
-            ThinPair pair{a, b,
-                          friction_between(one.definition.material, two.definition.material, world.rigid.surface_pairs),
-                          candidates_of(world, one, two)};
+            ThinPair pair{.a = a,
+                          .b = b,
+                          .friction = friction_between(one.definition.material, two.definition.material,
+                                                       world.rigid.surface_pairs)};
+            find_candidates(world, one, two, pair);
             if (pair.candidates.empty()) continue;
-            if (!one.definition.ties.empty() || !two.definition.ties.empty()) {
-                pair.tied_a = tied_nodes(world, one, two);
-                pair.tied_b = tied_nodes(world, two, one);
-            }
             pairs.push_back(std::move(pair));
             const std::uint32_t i = root_of(group, a), k = root_of(group, b);
             group[std::max(i, k)] = std::min(i, k);
@@ -325,7 +347,9 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
     }
     for (ThinPair& pair : pairs) {
         ThinGroup& own = groups[number[pair.a]];
-        own.pairs.push_back({place[pair.a], place[pair.b], pair.friction, std::move(pair.candidates)});
+        pair.a = place[pair.a];
+        pair.b = place[pair.b];
+        own.pairs.push_back(std::move(pair));
     }
     for (const ThinTie& tie : ties)
         groups[number[tie.member]].ties.push_back({place[tie.member], place[tie.other], tie.index});
