@@ -98,6 +98,13 @@ bool DeformableRecord::has_tetrahedra_of(const DeformableRecord& other) const {
     return own != nullptr && others != nullptr && own->tetrahedra == others->tetrahedra;
 }
 
+bool DeformableRecord::has_surface_of(const DeformableRecord& other) const {
+    const auto* own = std::get_if<Cloth>(&definition.matter);
+    const auto* others = std::get_if<Cloth>(&other.definition.matter);
+    if (own != nullptr && others != nullptr) return own->triangles == others->triangles;
+    return std::holds_alternative<Rope>(definition.matter) && std::holds_alternative<Rope>(other.definition.matter);
+}
+
 Quat DeformableRecord::rotation() const { return solid() ? solid()->rotation(0) : definition.pose.rotation; }
 
 void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {

@@ -72,6 +72,8 @@ struct DeformableRecord {
     [[nodiscard]] Vec3 acceleration(Vec3 gravity) const;
     /// Whether both are solids of the same tetrahedra.
     [[nodiscard]] bool has_tetrahedra_of(const DeformableRecord& other) const;
+    /// Whether both are ropes, or sheets of the same triangles: for equal numbers of nodes, their edges are the same.
+    [[nodiscard]] bool has_surface_of(const DeformableRecord& other) const;
     /// Approximate rotation of the whole.
     [[nodiscard]] Quat rotation() const;
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no

@@ -2,6 +2,8 @@
 // Deformables that are placed, moved and changed from outside while the world runs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <limits>
 
 #include "make_world.h"
@@ -112,6 +114,29 @@ TEST_F(DeformableChanges, OtherMatterGoesOnWhereTheOldOneWas) {
     const Conserved after = world_->conserved();
     EXPECT_LT(length(after.linear_momentum - before.linear_momentum), 1e-6 * length(before.linear_momentum));
     EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-2 * length(before.angular_momentum));
+}
+
+// Its contacts with another sheet are remembered by the numbers of edges and triangles.
+TEST_F(DeformableChanges, ASheetOnAnotherGetsOtherTriangles) {
+    DeformableDefinition upper = cloth_rectangle(0.4, 0.4, 0.1, {.area_density = 0.2});
+    DeformableDefinition lower = upper;
+    for (std::uint32_t i = 0; i < lower.nodes.size(); ++i) lower.pinned.push_back(i);
+    upper.pose.position = {0.02, 0.003, 0};
+    add(lower);
+    const DeformableHandle sheet = add(upper);
+    run(30);
+    auto& triangles = std::get<Cloth>(upper.matter).triangles;
+    const auto is_spare = [&](const auto& triangle) {
+        return std::ranges::all_of(triangle, [&](std::uint32_t node) {
+            return std::ranges::count_if(triangles, [&](const auto& t) { return std::ranges::count(t, node) > 0; }) > 1;
+        });
+    };
+    const auto spare = std::ranges::find_if(triangles, is_spare);
+    ASSERT_NE(spare, triangles.end());
+    triangles.erase(spare);
+    ASSERT_TRUE(world_->set_deformable(sheet, upper));
+    run(30);
+    for (const Vec3 node : world_->node_positions(sheet)) EXPECT_NEAR(node.y, 2e-3, 1e-3);
 }
 
 TEST_F(DeformableChanges, AHandHoldsItByAttachmentsThatComeAndGo) {

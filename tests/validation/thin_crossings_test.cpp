@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Sheets and ropes that are twisted, thrown and knotted: no edge is ever in a triangle (docs/physics/thin-contact.md).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "physics/definitions/deformable_primitives.h"
+#include "validation/reference.h"
+
+namespace embody::physics {
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return dot(cross(b - a, c - a), d - a); }
+
+bool passes(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
+    if ((volume(a, b, c, p) > 0) == (volume(a, b, c, q) > 0)) return false;
+    const bool side = volume(p, q, a, b) > 0;
+    return side == (volume(p, q, b, c) > 0) && side == (volume(p, q, c, a) > 0);
+}
+
+const Triangles& triangles_of(const World& world, DeformableHandle sheet) {
+    return std::get<Cloth>(world.deformable(sheet)->matter).triangles;
+}
+
+// Edges of the one in triangles of the other, which may be itself.
+int crossings(const World& world, DeformableHandle one, DeformableHandle other) {
+    const auto x = world.node_positions(one), y = world.node_positions(other);
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (const auto& t : triangles_of(world, one)) {
+        for (std::size_t k = 0; k < 3; ++k)
+            edges.push_back({std::minmax(t[k], t[(k + 1) % 3]).first, std::minmax(t[k], t[(k + 1) % 3]).second});
+    }
+    std::ranges::sort(edges);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    int count = 0;
+    for (const auto& t : triangles_of(world, other)) {
+        Bounds box;
+        for (const std::uint32_t node : t) box.add(y[node]);
+        for (const auto& [p, q] : edges) {
+            if (!overlaps(box, Bounds{min(x[p], x[q]), max(x[p], x[q])})) continue;
+            if (one == other && (std::ranges::count(t, p) > 0 || std::ranges::count(t, q) > 0)) continue;
+            count += passes(x[p], x[q], y[t[0]], y[t[1]], y[t[2]]) ? 1 : 0;
+        }
+    }
+    return count;
+}
+
+class Random {
+public:
+    explicit Random(unsigned seed) : generator_(seed) {}
+    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+    Quat turn() {
+        const Vec3 axis{between(-1, 1), between(-1, 1), between(-1, 1)};
+        return from_axis_angle(normalized(axis, {0, 1, 0}), between(0, pi));
+    }
+
+private:
+    std::mt19937 generator_;
+};
+
+// A strip whose ends are held by bodies that turn against each other, a turn a second.
+void twist(double turns, double width, double edge, double stiffness) {
+    const auto world = make_world({});
+    constexpr double length = 0.6;
+    auto strip = cloth_rectangle(length, width, edge,
+                                 {.area_density = 0.2,
+                                  .stretch_stiffness = stiffness,
+                                  .shear_stiffness = stiffness / 10,
+                                  .rayleigh_damping = 0.01});
+    strip.contact_radius = 1e-3;
+    std::array<BodyHandle, 2> ends;
+    for (const int side : {0, 1}) {
+        const double sign = side == 0 ? -1 : 1;
+        BodyDefinition end{.kind = BodyKind::kinematic_body,
+                           .shape = world->create_shape(SphereShape{1e-3}).value(),
+                           .position = {sign * length / 2, 0, 0},
+                           .angular_velocity = {-sign * pi, 0, 0},
+                           .collision_mask = 0};
+        ends[static_cast<std::size_t>(side)] = world->create_body(end).value();
+        for (std::uint32_t i = 0; i < strip.nodes.size(); ++i) {
+            const Vec3 node = strip.nodes[i];
+            if (std::fabs(node.x - end.position.x) < 1e-6)
+                strip.attachments.push_back({i, ends[static_cast<std::size_t>(side)], node - end.position});
+        }
+    }
+    const DeformableHandle sheet = world->create_deformable(strip).value();
+    const int steps = static_cast<int>(std::lround(60 * turns));
+    for (int step = 0; step < steps + 30; ++step) {
+        if (step == steps) {
+            for (const BodyHandle end : ends) ASSERT_TRUE(world->set_velocity(end, {}, {}));
+        }
+        world->step();
+        if (step % 6 > 0) continue;
+        ASSERT_EQ(crossings(*world, sheet, sheet), 0) << "after " << step << " steps, width " << width;
+    }
+}
+
+TEST(ThinCrossings, AStripTwistedByTwoTurnsStaysOutOfItself) {
+    Random random(1);
+    for (int i = 0; i < 3; ++i)
+        twist(2, random.between(0.1, 0.25), random.between(0.02, 0.03), random.between(1000, 4000));
+}
+
+TEST(ThinCrossings, AStripTwistedByFiveTurnsStaysOutOfItself) { twist(5, 0.2, 0.02, 2000); }
+
+// At a sheet that is held at its corners, without weight.
+TEST(ThinCrossings, ThrownSheetsPassThroughNothingAndGainNothing) {
+    Random random(2);
+    for (int i = 0; i < 4; ++i) {
+        const auto world = make_world({.gravity = {}});
+        auto net = cloth_rectangle(1, 1, 0.06, {.area_density = 0.2});
+        for (std::uint32_t k = 0; k < net.nodes.size(); ++k) {
+            if (std::fabs(net.nodes[k].x) > 0.499 && std::fabs(net.nodes[k].z) > 0.499) net.pinned.push_back(k);
+        }
+        auto thrown = cloth_rectangle(0.4, 0.4, random.between(0.03, 0.08), {.area_density = random.between(0.1, 1)});
+        thrown.pose = {{0, 0.5, 0}, random.turn()};
+        thrown.linear_velocity = {random.between(-2, 2), -random.between(5, 20), random.between(-2, 2)};
+        const DeformableHandle one = world->create_deformable(net).value();
+        const DeformableHandle two = world->create_deformable(thrown).value();
+        const double start = energy(*world);
+        for (int step = 0; step < 60; ++step) {
+            world->step();
+            EXPECT_LE(energy(*world), 1.001 * start) << i << " step " << step;
+            const int count = crossings(*world, one, two) + crossings(*world, two, one) + crossings(*world, one, one) +
+                              crossings(*world, two, two);
+            ASSERT_EQ(count, 0) << i << " step " << step;
+        }
+    }
+}
+
+// On their edge or a corner, where they fold over themselves.
+TEST(ThinCrossings, SheetsThatFallOnAFloorFoldAndStayOutOfThemselves) {
+    Random random(3);
+    for (int i = 0; i < 3; ++i) {
+        const auto world = make_world({});
+        add_plane(*world, friction(random.between(0.2, 0.8)));
+        auto sheet = cloth_rectangle(0.5, 0.4, 0.03, {.area_density = random.between(0.1, 0.4)});
+        sheet.pose = {{0, 0.6, 0}, random.turn()};
+        sheet.angular_velocity = {random.between(-5, 5), random.between(-5, 5), random.between(-5, 5)};
+        const DeformableHandle fallen = world->create_deformable(sheet).value();
+        for (int step = 0; step < 120; ++step) {
+            world->step();
+            ASSERT_EQ(crossings(*world, fallen, fallen), 0) << i << " step " << step;
+        }
+    }
+}
+
+// An overhand knot, the curve (t³ - 3t, t⁴ - 4t², t⁵/5 - 2t) (A. R. Shastri, "Polynomial representations of knots",
+// 1992), drawn at its ends: it is shorter than the rope by what is in it. Without contact it is straight after half a
+// second.
+TEST(ThinCrossings, AnOverhandKnotHoldsItsPull) {
+    for (const double pull : {5.0, 20.0}) {
+        const auto world = make_world({.gravity = {}});
+        constexpr double step = 0.008;  // m, of the nodes
+        std::vector<Vec3> nodes;
+        for (int i = -2150; i <= 2150; ++i) {
+            const double t = 1e-3 * i;
+            const Vec3 at{0.035 * (t * t * t - 3 * t), 0.025 * (t * t * t * t - 4 * t * t),
+                          0.02 * (t * t * t * t * t / 5 - 2 * t)};
+            if (nodes.empty() || length(at - nodes.back()) >= step) nodes.push_back(at);
+        }
+        const auto last = static_cast<std::uint32_t>(nodes.size() - 1);
+        auto rope = rope_between({}, {step * last, 0, 0}, step,
+                                 {.diameter = 0.008,
+                                  .linear_density = 0.05,
+                                  .axial_stiffness = 2e4,
+                                  .bend_rigidity = 2e-4,
+                                  .rayleigh_damping = 0.01});
+        ASSERT_EQ(rope.nodes.size(), nodes.size());
+        rope.nodes = nodes;
+        rope.contact_radius = 0.004;
+        rope.material = friction(0.3);
+        std::array<BodyHandle, 2> ends;
+        for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+            const std::uint32_t node = side == 0 ? 0 : last;
+            BodyDefinition end{.shape = world->create_shape(SphereShape{0.005}).value(),
+                               .position = nodes[node],
+                               .mass = {.mass = 1},
+                               .linear_damping = 2,
+                               .collision_mask = 0};
+            ends[side] = world->create_body(end).value();
+            rope.attachments.push_back({node, ends[side], {}});
+        }
+        const DeformableHandle handle = world->create_deformable(rope).value();
+        const Vec3 along = normalized(nodes[last] - nodes[0]);
+        double early = 0;
+        for (int i = 0; i < 240; ++i) {
+            const double force = pull * std::min(1.0, i / 60.0);
+            ASSERT_TRUE(world->set_force(ends[0], -force * along, {}));
+            ASSERT_TRUE(world->set_force(ends[1], force * along, {}));
+            world->step();
+            if (i == 180) early = length(world->pose(ends[1]).position - world->pose(ends[0]).position);
+        }
+        const double late = length(world->pose(ends[1]).position - world->pose(ends[0]).position);
+        EXPECT_LT(late, 0.96 * step * last) << pull << " N";
+        EXPECT_LT(late - early, 0.005) << pull << " N: it has come to rest";
+        EXPECT_NEAR(world->rope_tensions(handle)[last / 8], pull, 0.05 * pull);
+    }
+}
+
+}  // namespace
+}  // namespace embody::physics
