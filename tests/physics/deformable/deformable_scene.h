@@ -85,7 +85,7 @@ struct DeformableScene {
             if (solves == substep.settings.cloth.max_solves || !next.choose(moves, body_moves, false)) break;
             touch = std::move(next);
         }
-        deformable.finish(substep, moves, body_moves, {}, bodies);
+        deformable.finish(substep, moves, body_moves, true, bodies);
         deformable.move_nodes(moves, substep.h);
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.

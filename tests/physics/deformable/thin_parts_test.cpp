@@ -340,12 +340,9 @@ TEST(TieSprings, PullEquallyAndTogether) {
     double sum = 0;
     for (const double weight : springs.springs()[0].weight) sum += weight;
     EXPECT_NEAR(sum, 0, 1e-12);
-    std::vector<Vec3> moves(4), given(4);
-    springs.finish(moves, given);
-    Vec3 total;
-    for (const Vec3 force : given) total += force;
-    EXPECT_LT(length(total), 1e-9 * (1 + length(given[0])));
-    EXPECT_LT(given[0].y, 0);
+    const std::vector<Vec3> moves(4);
+    springs.finish(moves);
+    EXPECT_LT(pull.y, 0);
 }
 
 TEST(RopeSegments, DirectionsAndHowTheyChange) {

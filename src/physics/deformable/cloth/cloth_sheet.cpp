@@ -240,13 +240,11 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
     });
 }
 
-// Only while no external forces but weight, air, liquids and `given` act. `by_flow`: impulses, N s.
-void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow,
-                               std::span<Vec3> moves) const {
+// Only while no external forces but weight, air and liquids act. `by_flow`: impulses, N s.
+void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> by_flow, std::span<Vec3> moves) const {
     const double h = substep.h;
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
-    for (std::size_t i = 0; i < given.size(); ++i) all[i] += h * given[i];
     for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
@@ -279,13 +277,13 @@ void ClothSheet::freeze() {
 }
 
 void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
-                        std::span<const Vec3> given, std::span<TouchedBody> bodies) {
+                        bool is_alone, std::span<TouchedBody> bodies) {
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
-    if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
-        keep_momentum(substep, given, by_flow, moves);
+    if (is_alone && !is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
+        keep_momentum(substep, by_flow, moves);
     springs_.finish(moves, body_moves, substep, bodies);
 }
 

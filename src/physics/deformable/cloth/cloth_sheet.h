@@ -35,9 +35,9 @@ public:
     /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Ends it with these moves (m), which touch() was solved with, and changes them where the solve could not know.
-    /// `given`: forces on the nodes besides, N; none or one a node. Pushes the bodies.
-    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
-                std::span<const Vec3> given, std::span<TouchedBody> bodies);
+    /// `is_alone`: no other sheet or rope pulls or pushes it, so its momenta are kept. Pushes the bodies.
+    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves, bool is_alone,
+                std::span<TouchedBody> bodies);
     /// Moves the nodes by these moves (m) in h seconds.
     void move_nodes(std::span<const Vec3> moves, double h);
     /// Stops it for good where it is.
@@ -79,8 +79,7 @@ private:
     void find_strains(const Substep& substep, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
-    void keep_momentum(const Substep& substep, std::span<const Vec3> given, std::span<const Vec3> by_flow,
-                       std::span<Vec3> moves) const;
+    void keep_momentum(const Substep& substep, std::span<const Vec3> by_flow, std::span<Vec3> moves) const;
     // Distance of layers: as if a body of no thickness lay between them.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 

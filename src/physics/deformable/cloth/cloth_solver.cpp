@@ -130,7 +130,7 @@ void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<co
             const std::uint32_t node = spring.node[n];
             Vec3 held;
             for (std::size_t m = 0; m < count; ++m) {
-                if (is_same_block(spring, n, m)) held += move[m];
+                if (is_same_block(node, spring.node[m])) held += move[m];
             }
             const Vec3 added = spring.weight[n] * (force - k * held);
             if (node < nodes_) {

@@ -105,13 +105,8 @@ private:
     [[nodiscard]] double sum_of_others() const;
     [[nodiscard]] Vec3 p_of(std::uint32_t node) const;
     [[nodiscard]] bool is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
-    // Whether a matrix of one node or one line has the spring's term of two of its nodes: of a line those of one
-    // feature alone. Where a line touches itself the others may be anywhere along it.
-    [[nodiscard]] bool is_same_block(const TouchSpring& spring, std::size_t i, std::size_t k) const {
-        const std::uint32_t a = spring.node[i], b = spring.node[k];
-        if (a == b) return true;
-        return a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_] &&
-               spring.weight[i] * spring.weight[k] > 0;
+    [[nodiscard]] bool is_same_block(std::uint32_t a, std::uint32_t b) const {
+        return a == b || (a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_]);
     }
 
     ClothSettings settings_;

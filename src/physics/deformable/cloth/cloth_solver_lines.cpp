@@ -19,7 +19,7 @@ bool ClothSolver::prepare_lines(std::span<const LineSystem> lines, std::span<con
             const std::size_t line = line_of_[spring.node[a] - nodes_], first = nodes_ + line_first_[line];
             for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
                 // Each pair of nodes once, the later one as the row.
-                if (spring.node[b] > spring.node[a] || !is_same_block(spring, a, b)) continue;
+                if (spring.node[b] > spring.node[a] || !is_same_block(spring.node[a], spring.node[b])) continue;
                 lines[line].matrix->add(spring.node[a] - first, spring.node[b] - first,
                                         (spring.weight[a] * spring.weight[b]) * spring.matrix);
             }

@@ -44,7 +44,7 @@ void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
 bool ClothSolver::is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
     if (moves_body(spring, bodies)) return false;
     for (std::size_t k = 1; k < static_cast<std::size_t>(spring.count); ++k) {
-        if (!is_same_block(spring, 0, k)) return false;
+        if (!is_same_block(spring.node[0], spring.node[k])) return false;
     }
     return true;
 }

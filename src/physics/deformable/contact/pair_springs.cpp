@@ -183,8 +183,9 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
-    // Squeezed layers: the deeper, the nearer to the stiffness of what squeezes them.
-    if (gap < 0) {
+    // Squeezed layers of one sheet: the deeper, the nearer to the stiffness of what squeezes them. Ropes, which are
+    // far stiffer along than any contact, gained up to 40 times their energy by it where they met at 5 m/s.
+    if (gap < 0 && is_self) {
         const double depth = std::min(-gap / search.radius, settings.max_stiff_depth);
         const double stiffness = std::min(own_stiffness[0], own_stiffness[1]);
         spring.stiffness =
@@ -296,7 +297,7 @@ bool PairSprings::choose(std::span<const Vec3> moves, bool is_predicted) {
     return sum.change > start_.settings.change_tolerance * sum.acting;
 }
 
-void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories) {
+void PairSprings::finish(std::span<const Vec3> moves, ThinContacts& memories) {
     const double gravity = std::max(start_.gravity, start_.settings.min_gravity);
     for (const Slots& slots : slots_) memories[slots].clear();
     for (std::size_t i = 0; i < springs_.size(); ++i) {
@@ -314,9 +315,6 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             start_.mass, std::max(std::min(own.push, before) / gravity, start_.settings.load_memory * own.carried));
         own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
         own.sticks = spring.sticks;
-        if (slots_[pair_[i]].first == slots_[pair_[i]].second) continue;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-            given[spring.node[k]] += spring.weight[k] * force;
     }
     for (const Slots& slots : slots_) std::ranges::stable_sort(memories[slots], {}, &ThinContact::key);
 }

@@ -73,8 +73,8 @@ public:
              std::span<const ThinMeeting> meetings, std::span<const Vec3> moves);
     /// As TouchSprings::choose(), for moves of all nodes.
     bool choose(std::span<const Vec3> moves, bool is_predicted);
-    /// Adds the forces of the springs between different members to `given` (N), by node, and remembers all.
-    void finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories);
+    /// Remembers all.
+    void finish(std::span<const Vec3> moves, ThinContacts& memories);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
 private:

@@ -93,15 +93,6 @@ void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, 
                         min(sweep_a.bounds().upper, sweep_b.bounds().upper)};
     if (region.is_empty()) return;
     const SweptFeatures edges_a = sweep_a.joined_in(a.edges, region), edges_b = sweep_b.joined_in(b.edges, region);
-    if (a.nodes == b.nodes) {
-        const std::size_t first = candidates.size();
-        match(edges_a, edges_b, ThinFeature::edge_on_edge, false, workers, candidates);
-        const auto follow = [](const ThinCandidate& candidate) { return candidate.second <= candidate.first + 1; };
-        candidates.erase(
-            std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), follow),
-            candidates.end());
-        return;
-    }
     const SweptFeatures nodes_a = sweep_a.nodes_in(region), nodes_b = sweep_b.nodes_in(region);
     if (!b.triangles.empty())
         match(nodes_a, sweep_b.joined_in(b.triangles, region), ThinFeature::node_on_triangle, false, workers,

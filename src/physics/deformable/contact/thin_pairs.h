@@ -36,8 +36,7 @@ struct ThinCandidate {
 void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
                           TaskPool& workers, std::vector<ThinCandidate>& candidates);
 
-/// The same for features that may come closer than `reach` (m) by these moves of the nodes, one each, m. `a` and `b`
-/// may be one rope: then its segments that do not follow each other.
+/// The same for features that may come closer than `reach` (m) by these moves of the nodes, one each, m.
 void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, const ThinSurface& b,
                            std::span<const Vec3> moves_b, double reach, TaskPool& workers,
                            std::vector<ThinCandidate>& candidates);

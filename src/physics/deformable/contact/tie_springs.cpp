@@ -50,13 +50,10 @@ void TieSprings::begin(std::span<const PlacedTie> ties, double h, double gravity
     }
 }
 
-void TieSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given) {
+void TieSprings::finish(std::span<const Vec3> moves) {
     for (std::size_t i = 0; i < springs_.size(); ++i) {
         const TouchSpring& spring = springs_[i];
-        const Vec3 force = spring.force(spring.lead(moves, {}));
-        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-            given[spring.node[k]] += spring.weight[k] * force;
-        *pulls_[i] = force;
+        *pulls_[i] = spring.force(spring.lead(moves, {}));
     }
 }
 

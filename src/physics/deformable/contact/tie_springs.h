@@ -24,8 +24,8 @@ class TieSprings {
 public:
     /// Begins a substep of h seconds. `gravity`: m/s². Separated ends are drawn together no faster than recovery_speed.
     void begin(std::span<const PlacedTie> ties, double h, double gravity, const ThinContactSettings& settings);
-    /// Adds the forces of the springs to `given` (N), by node, and remembers.
-    void finish(std::span<const Vec3> moves, std::span<Vec3> given);
+    /// Remembers the forces of the springs.
+    void finish(std::span<const Vec3> moves);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
 private:

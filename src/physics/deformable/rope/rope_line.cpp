@@ -364,18 +364,18 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     std::vector<double> fractions;
     if (!clamps_.holds_any())
         fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
-    finish(substep, moves_, body_moves_, {}, bodies, fractions);
+    finish(substep, moves_, body_moves_, true, bodies, fractions);
     move_nodes(moves_, substep.h);
 }
 
 void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
-                      std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions) {
+                      bool is_alone, std::span<TouchedBody> bodies, std::span<const double> fractions) {
     new_breaks_.clear();
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
-    const bool is_free = std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
+    const bool is_free = is_alone && std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
                          std::ranges::none_of(springs_.springs(), acts);
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
@@ -383,7 +383,6 @@ void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<c
         std::vector<Vec3> all(count);
         for (std::size_t i = 0; i < count; ++i)
             all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
-        for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
         for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
         keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves);
     }

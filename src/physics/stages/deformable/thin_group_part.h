@@ -50,6 +50,7 @@ private:
     bool choose_again(bool is_last);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
+    [[nodiscard]] bool is_alone(const Member& member) const;
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
 
@@ -64,8 +65,8 @@ private:
     std::vector<CrossingGuard::Pair> guarded_;  // the same
     PairSprings pairs_;                         // of `met_`
     TieSprings ties_;
-    std::vector<TouchSpring> springs_;        // of all
-    std::vector<Vec3> moves_, from_, given_;  // by node of all
+    std::vector<TouchSpring> springs_;  // of all
+    std::vector<Vec3> moves_, from_;    // by node of all
     std::vector<BodyMove> body_moves_, body_from_;
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "foundation/task_pool.h"
@@ -97,37 +96,7 @@ bool may_touch_others(const Bounds& bounds) {
     return size.x < max_finite_size && size.y < max_finite_size && size.z < max_finite_size;
 }
 
-// Of a rope with itself: segments that are so far apart along it that it need not be straight between them, half a turn
-// of its own radius.
-std::vector<ThinCandidate> own_candidates_of(const DeformableAccess& world, const DeformableRecord& record) {
-    if (!may_touch_others(record.bounds())) return {};
-    std::vector<ThinCandidate> candidates;
-    std::vector<std::array<std::uint32_t, 2>> segments;
-    const ThinSurface surface = surface_of(record, segments);
-    find_thin_candidates(surface, surface, world.settings.time_step, pull_on(world, record), world.workers, candidates);
-    const double bend = std::numbers::pi * surface.radius / surface.edge_length;
-    std::erase_if(candidates,
-                  [&](const ThinCandidate& candidate) { return candidate.second - candidate.first < 1 + bend; });
-    return candidates;
-}
-
 bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
-
-// With itself: a sheet looks for its candidates in each part of a step, a rope has them here. A rope that is twisted
-// does not touch itself: the common solve does not include its twist.
-void add_own_pair(const DeformableAccess& world, std::uint32_t i, const DeformableRecord& record,
-                  std::vector<ThinPair>& pairs) {
-    ThinPair pair{.a = i,
-                  .b = i,
-                  .friction = friction_between(record.definition.material, record.definition.material,
-                                               world.rigid.surface_pairs)};
-    if (record.rope()) {
-        if (record.rope()->has_clamps()) return;
-        pair.candidates = own_candidates_of(world, record);
-        if (pair.candidates.empty()) return;
-    }
-    pairs.push_back(std::move(pair));
-}
 
 // The group that member i belongs to: that of its first member.
 std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
@@ -135,50 +104,23 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
-// Whether something that can move is near it.
-bool is_near_movable(const ThinDeformable& rope, std::span<const TouchedBody> bodies) {
-    const auto is_movable = [&](std::uint32_t body) { return bodies[body].inverse_mass > 0; };
-    return std::ranges::any_of(rope.contacts, [&](const NodeContact& contact) { return is_movable(contact.body); }) ||
-           std::ranges::any_of(rope.segment_contacts,
-                               [&](const SegmentContact& contact) { return is_movable(contact.plane.body); });
-}
-
-// Whether the rope goes on by itself: its own solve, which also knows twist, is the better one. False, with nothing
-// changed, where it touches itself or would.
-bool advance_rope_alone(const DeformableAccess& world, const ThinGroup& group, ThinDeformable& thin, double h,
-                        double time, std::vector<TouchedBody>& bodies) {
-    DeformableRecord& record = *thin.record;
-    const Substep substep = substep_of(world, record, h, time);
-    if (group.pairs.empty() || is_near_movable(thin, bodies)) {
-        advance_rope(thin, substep, bodies);
-        note_breaks(world, record);
-        return true;
+// In parts where things meet fast: half as long until they can be solved, then longer again.
+void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
+                      double time, std::vector<TouchedBody>& bodies) {
+    const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
+    const PartPushes pushes(bodies);
+    double done = 0, part = h;
+    while (done < h) {
+        const std::vector<TouchedBody> before = bodies;
+        if (done > 0) pushes.go_on(bodies, part);
+        if (ThinGroupPart(world, group, thin, part, time + done).advance(bodies, part / 2 < shortest)) {
+            done += part;
+            part = std::min(2 * part, h - done);
+        } else {
+            bodies = before;
+            part /= 2;
+        }
     }
-    const auto known = world.deformables.thin_contacts.find({record.slot, record.slot});
-    const auto pushes = [](const ThinContact& contact) { return contact.push > 0; };
-    if (known != world.deformables.thin_contacts.end() && std::ranges::any_of(known->second, pushes)) return false;
-    const RopeLine before = *record.rope();
-    const std::vector<TouchedBody> bodies_before = bodies;
-    advance_rope(thin, substep, bodies);
-    std::vector<Vec3> moves;
-    for (std::size_t i = 0; i < before.nodes().size(); ++i)
-        moves.push_back(record.nodes().position[i] - before.nodes().position[i]);
-    std::vector<std::array<std::uint32_t, 2>> segments;
-    ThinMember seen{surface_of(record, segments), record.slot, 0, {}, {}};
-    const auto touch = [&](const ThinCandidate& candidate) {
-        return length(nearest_points(seen.surface, seen.surface, candidate).away) < 2 * seen.surface.radius;
-    };
-    bool is_alone = std::ranges::none_of(group.pairs[0].candidates, touch);
-    seen.surface.nodes = &before.nodes();
-    const CrossingGuard::Pair self{0, 0, nullptr, {}, {}};
-    is_alone = is_alone && CrossingGuard(std::span(&seen, 1), std::span(&self, 1), world.workers).find(moves).empty();
-    if (is_alone) {
-        note_breaks(world, record);
-        return true;
-    }
-    *record.rope() = before;
-    bodies = bodies_before;
-    return false;
 }
 
 void advance_group(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
@@ -191,23 +133,11 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         ties[i].add(thin[group.members[i]], bodies, h);
     }
     ThinDeformable& first_member = thin[group.members[0]];
-    if (group.members.size() > 1 || !first_member.record->rope() ||
-        !advance_rope_alone(world, group, first_member, h, time, bodies)) {
-        // In parts where things meet fast: half as long until they can be solved, then longer again.
-        const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
-        const PartPushes pushes(bodies);
-        double done = 0, part = h;
-        while (done < h) {
-            const std::vector<TouchedBody> before = bodies;
-            if (done > 0) pushes.go_on(bodies, part);
-            if (ThinGroupPart(world, group, thin, part, time + done).advance(bodies, part / 2 < shortest)) {
-                done += part;
-                part = std::min(2 * part, h - done);
-            } else {
-                bodies = before;
-                part /= 2;
-            }
-        }
+    if (group.members.size() == 1 && first_member.record->rope()) {
+        advance_rope(first_member, substep_of(world, *first_member.record, h, time), bodies);
+        note_breaks(world, *first_member.record);
+    } else {
+        advance_in_parts(world, group, thin, h, time, bodies);
     }
     for (std::size_t i = 0; i < group.members.size(); ++i) {
         solids[i].take(thin[group.members[i]], bodies, first);
@@ -325,7 +255,13 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
             group[std::max(i, k)] = std::min(i, k);
         }
     }
-    for (std::uint32_t i = 0; i < thin.size(); ++i) add_own_pair(world, i, *thin[i].record, pairs);
+    // A sheet with itself, whose candidates each part of a step finds. A rope does not touch itself.
+    for (std::uint32_t i = 0; i < thin.size(); ++i) {
+        const DeformableRecord& record = *thin[i].record;
+        if (!record.cloth()) continue;
+        const Material& material = record.definition.material;
+        pairs.push_back({.a = i, .b = i, .friction = friction_between(material, material, world.rigid.surface_pairs)});
+    }
     std::vector<ThinTie> ties = find_ties(world, thin);
     for (const ThinTie& tie : ties) {
         const std::uint32_t i = root_of(group, tie.member), k = root_of(group, tie.other);
