@@ -190,7 +190,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
 
     system_.build(grid_, settings_, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {is_tense_, settings_.components});
-    obstacles_.list_areas(grid_);
+    obstacles_.list_areas(grid_, gravity * properties_.density);
     impulse_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
@@ -238,11 +238,13 @@ void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcom
     viscosity_.begin(liquid, dt, settings_.viscosity, grid_, obstacles_);
     subtract_last_gradient(grid_, scale, workers);
     change_obstacles(impulse_, 1);
+    change_by_films(dt);
     const int iterations = viscosity_.solve(liquid, dt, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= settings_.viscosity.max_iterations;
     subtract_last_gradient(grid_, -scale, workers);
     change_obstacles(impulse_, -1);
+    change_by_films(-dt);
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
@@ -250,6 +252,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve pressure");
     const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size(), rho = properties_.density;
+    change_by_films(dt);
     outflow(grid_, obstacles_, system_, flow_, workers);
     immersed_.add_outflow(grid_, flow_);
     for (double& flow : flow_) flow *= -rho / h;
@@ -263,7 +266,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
 
     subtract_gradient(grid_, {system_, impulse_, surface_, 1 / (rho * h)}, grid_.velocity, workers);
     immersed_.apply_pressure(system_, impulse_, grid_);
-    push_obstacles(impulse_);
+    push_obstacles(impulse_, dt);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {
             const int row = grid_.row[cell];
@@ -297,12 +300,30 @@ void FluidSolver::change_obstacles(std::span<const double> impulse, double facto
     }
 }
 
-void FluidSolver::push_obstacles(std::span<const double> impulse) {
+// What films press beyond the pressure of the cells at which they begin.
+FluidSolver::Push FluidSolver::push_of_films(const MovingObstacle& moving, double dt) {
+    Push push;
+    for (const ObstacleArea& part : moving.areas) {
+        push.linear += part.area * (part.head * dt);
+        push.angular += part.moment * (part.head * dt);
+    }
+    return push;
+}
+
+void FluidSolver::change_by_films(double dt) {
+    for (MovingObstacle& moving : obstacles_.moving()) {
+        const Push push = push_of_films(moving, dt);
+        moving.linear_velocity += moving.response.linear_change(push.linear, push.angular);
+        moving.angular_velocity += moving.response.angular_change(push.linear, push.angular);
+    }
+}
+
+void FluidSolver::push_obstacles(std::span<const double> impulse, double dt) {
     change_obstacles(impulse, 1);
     for (MovingObstacle& moving : obstacles_.moving()) {
-        const Push push = push_on(moving, impulse);
-        moving.obstacle->impulse += push.linear;
-        moving.obstacle->angular_impulse += push.angular;
+        const Push push = push_on(moving, impulse), films = push_of_films(moving, dt);
+        moving.obstacle->impulse += push.linear + films.linear;
+        moving.obstacle->angular_impulse += push.angular + films.angular;
         release_liquid(moving);
     }
 }

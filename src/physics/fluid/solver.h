@@ -108,7 +108,9 @@ private:
     };
     static Push push_on(const MovingObstacle& moving, std::span<const double> impulse);
     void change_obstacles(std::span<const double> impulse, double factor);
-    void push_obstacles(std::span<const double> impulse);
+    static Push push_of_films(const MovingObstacle& moving, double dt);
+    void change_by_films(double dt);
+    void push_obstacles(std::span<const double> impulse, double dt);
 
     Vec3 origin_;
     FluidSettings settings_;  // of this step

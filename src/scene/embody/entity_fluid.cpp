@@ -16,6 +16,9 @@ Result<LiquidDefinition> EntityPoints::liquid(const Entity& entity, const attrib
     liquid.pose = entity.pose;
     liquid.matter = attributes::fluid_from_attributes(attributes);
     liquid.matter.allow_sleep = entity.allow_sleep;
+    const attributes::AttributeEntry* cells = attributes.find("fluid_cell_size");
+    if (cells != nullptr && cells->level == attributes::AttributeLevel::manual)
+        liquid.set_cell_size = liquid.matter.cell_size;
     if (entity.kept) {
         liquid.places = places_of(*entity.kept);
         liquid.matter.cell_size = entity.kept->cell_size;

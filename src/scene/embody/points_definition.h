@@ -31,6 +31,7 @@ struct LiquidDefinition {
     std::vector<Vec3> places;                ///< of its particles in the shape's frame, of cells as large as the
                                              ///< matter's, m; empty: it fills the shape
     std::size_t particle_budget = 0;         ///< maximum number of particles
+    double set_cell_size = 0;                ///< m, told by hand; 0: the cells of the matter come from the budget
     Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid body
     Vec3 force;                              ///< constant, N, distributed over the particles
     bool enabled = true;

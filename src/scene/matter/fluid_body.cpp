@@ -20,6 +20,7 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
     made->matter_ = definition.matter;
     made->force_ = definition.force;
+    made->set_cell_size_ = definition.set_cell_size;
     made->has_run_ = !definition.places.empty();
     Result<std::vector<Vec3>> places =
         definition.places.empty() ? made->fill(definition) : Result<std::vector<Vec3>>(definition.places);
@@ -48,16 +49,17 @@ Result<std::vector<Vec3>> FluidBody::fill(const LiquidDefinition& definition) {
     if (!filling.ok()) return filling.error();
     // Particles that join a fluid have the volume of that fluid's particles, whatever their number.
     matter_.cell_size = filling.value().cell_size;
-    const double cell = liquids_.cell_size(matter_, transformed(definition.pose, region.value().bounds()));
+    const double cell =
+        liquids_.cell_size(matter_, definition.set_cell_size, transformed(definition.pose, region.value().bounds()));
     bool is_own = cell == matter_.cell_size;
     if (!is_own) {
         const std::size_t max_distance = definition.particle_budget * max_particles_ratio;
         Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, max_distance);
         // A liquid thinner than the other's particles would get more volume from them: it gets its own fluid.
-        constexpr double max_cell_ratio = 1.08;  // ratio of cell sizes; 1.26 in volume
         is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(max_cell_ratio);
         if (!is_own) filling = std::move(joined);
     }
+    join_ = cell == matter_.cell_size ? Join::none_other : is_own ? Join::apart : Join::joined;
     // The cells of a new fluid are chosen so that the particles have the liquid's volume.
     constexpr double max_cell_size = 1;  // m, limit of the physics
     if (filling.value().cell_size > max_cell_size)
@@ -84,6 +86,7 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
                      "place it outside of solid things, or make it larger"};
     part_ = part.value();
     part_->force = force_;
+    part_->set_cell_size = set_cell_size_;
     if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
 
     // Particles in solids were left out, so that ids are no indices into `particles`, but the order is the same.

@@ -23,6 +23,11 @@ public:
     [[nodiscard]] bool is_liquid() const override { return true; }
     /// Of the cells that its particles are made for, m.
     [[nodiscard]] double cell_size() const { return matter_.cell_size; }
+    /// Cells whose sizes differ by no more than this factor, 1.26 in volume, count as the same.
+    static constexpr double max_cell_ratio = 1.08;
+    /// What became of it when it was filled beside a fluid of its matter with other cells that it could join.
+    enum class Join { none_other, joined, apart };
+    [[nodiscard]] Join join() const { return join_; }
     /// The fluid of the world that its particles belong to; null while it is disabled.
     [[nodiscard]] physics::FluidHandle fluid() const { return part_ ? part_->fluid : physics::FluidHandle{}; }
     [[nodiscard]] physics::SleepState state() const override;
@@ -59,7 +64,9 @@ private:
     physics::World& world_;
     Liquids& liquids_;
     physics::FluidDefinition matter_;
-    Vec3 force_;                     ///< constant, N
+    Vec3 force_;                ///< constant, N
+    double set_cell_size_ = 0;  ///< m, told by hand; 0: none
+    Join join_ = Join::none_other;
     Liquids::Part* part_ = nullptr;  ///< null while it is disabled
     std::vector<Particle> kept_;     ///< state of the particles while it is disabled
     bool has_run_ = false;           ///< whether kept_ is of a run, and not as it was filled

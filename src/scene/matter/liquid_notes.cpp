@@ -37,15 +37,33 @@ std::string in_millimetres(double length) {
     return text;
 }
 
+// Why the cells are not those that were told by hand: the budget of particles, or other liquid.
+std::string note_of_cells(const LiquidDefinition& liquid, const FluidBody& body) {
+    if (!(liquid.set_cell_size > 0) || !liquid.places.empty()) return {};
+    const double particles = body.mass() / liquid.matter.density * 8 / std::pow(liquid.set_cell_size, 3);
+    const bool are_too_many = particles > static_cast<double>(liquid.particle_budget);
+    const std::string cells =
+        "has cells of " + in_millimetres(body.cell_size()) + " and not of " + in_millimetres(liquid.set_cell_size);
+    const std::string budget = "particle_budget is " + std::to_string(liquid.particle_budget) + " and it would take " +
+                               std::to_string(std::llround(particles)) + " particles";
+    if (body.join() == FluidBody::Join::joined && body.cell_size() > FluidBody::max_cell_ratio * liquid.set_cell_size)
+        return cells + ": it is one with other liquid of its matter, which has these";
+    const bool is_coarser = body.cell_size() > liquid.set_cell_size;
+    if (body.join() == FluidBody::Join::joined || !are_too_many || !is_coarser) return {};
+    if (body.join() == FluidBody::Join::apart)
+        return cells + ", so that it does not see other liquid of its matter: " + budget;
+    return cells + ": " + budget;
+}
+
 }  // namespace
 
-std::string note_of(const LiquidDefinition& liquid, const MovingPoints& points) {
+std::string note_of(const LiquidDefinition& liquid, const FluidBody& body) {
     const Result<FilledRegion> region = FilledRegion::of(liquid.shape);
     if (!region.ok()) return {};
     const Vec3 size = region.value().bounds().size();
     const double thickness = std::min({size.x, size.y, size.z});
-    const double edge = std::cbrt(4 * std::numbers::pi / 3) * points.radius();
-    if (thickness > edge / 2) return {};
+    const double edge = std::cbrt(4 * std::numbers::pi / 3) * body.radius();
+    if (thickness > edge / 2) return note_of_cells(liquid, body);
     return "is " + in_millimetres(thickness) + " thick, which its particles of " + in_millimetres(edge) +
            " cannot show: it moves as single drops, and those that run too far away are taken out (raise "
            "particle_budget, or make "

@@ -25,6 +25,8 @@ bool is_same_matter(const FluidDefinition& a, const FluidDefinition& b) {
            a.allow_sleep == b.allow_sleep;
 }
 
+bool are_within(double ratio, double limit) { return ratio <= limit && ratio >= 1 / limit; }
+
 double cells_of(const Bounds& bounds, double cell) {
     if (bounds.is_empty()) return 0;
     const Vec3 size = bounds.size() / cell;
@@ -33,24 +35,27 @@ double cells_of(const Bounds& bounds, double cell) {
 
 }  // namespace
 
-Liquids::SharedFluid* Liquids::to_join(const FluidDefinition& matter, const Bounds& bounds, double ratio_limit,
-                                       FluidHandle except) {
+Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
     for (SharedFluid& shared : fluids_) {
-        if (shared.fluid == except) continue;
+        if (shared.fluid == wish.except) continue;
         const FluidDefinition& other = *world_.fluid(shared.fluid);
-        const double ratio = matter.cell_size / other.cell_size;
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
-        if (!is_same_matter(matter, other) || ratio > ratio_limit || ratio < 1 / ratio_limit || particles.is_frozen)
+        if (!is_same_matter(wish.matter, other) || particles.is_frozen) continue;
+        const auto is_set_alike = [&](const auto& part) {
+            return part->set_cell_size > 0 && are_within(wish.set_cell_size / part->set_cell_size, max_ratio);
+        };
+        if (!are_within(wish.matter.cell_size / other.cell_size, wish.ratio_limit) &&
+            std::ranges::none_of(shared.parts, is_set_alike))
             continue;
         Bounds both = particles.bounds;
-        both.add(bounds);
+        both.add(wish.bounds);
         if (cells_of(both, other.cell_size) < max_cells) return &shared;
     }
     return nullptr;
 }
 
-double Liquids::cell_size(const FluidDefinition& matter, const Bounds& bounds) {
-    const SharedFluid* shared = to_join(matter, bounds, max_ratio);
+double Liquids::cell_size(const FluidDefinition& matter, double set_cell_size, const Bounds& bounds) {
+    const SharedFluid* shared = to_join({matter, bounds, max_ratio, set_cell_size, {}});
     return shared ? world_.fluid(shared->fluid)->cell_size : matter.cell_size;
 }
 
@@ -59,7 +64,7 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     for (const Vec3 place : places) bounds.add(place);
     auto part = std::make_unique<Part>();
     Part* added = part.get();
-    if (const SharedFluid* shared = to_join(matter, bounds, 1)) {
+    if (const SharedFluid* shared = to_join({matter, bounds})) {
         const Result<physics::FluidIds> ids = world_.add_to_fluid(shared->fluid, places);
         if (!ids.ok()) return ids.error();
         part->fluid = shared->fluid;
@@ -216,7 +221,8 @@ Result<void> Liquids::regroup(Part& part) {
     if (particles.is_frozen || particles_of(part).empty()) return {};
     const bool is_alone = find(part.fluid)->parts.size() == 1;
     if (!is_alone && cells_of(particles.bounds, particles.cell_size) < max_cells) return {};
-    const SharedFluid* other = to_join(*world_.fluid(part.fluid), bounds_of(part), 1, part.fluid);
+    const Bounds bounds = bounds_of(part);
+    const SharedFluid* other = to_join({*world_.fluid(part.fluid), bounds, 1, 0, part.fluid});
     if (is_alone && !other) return {};
     return hand_over(part, other ? other->fluid : FluidHandle{});
 }

@@ -25,11 +25,12 @@ public:
         physics::FluidHandle fluid;
         physics::FluidIds ids;
         std::vector<std::uint32_t> places;  ///< indices, see particles_of
+        double set_cell_size = 0;           ///< m, told by hand; 0: none. The fluid's may be larger
         Vec3 force;                         ///< constant, N, distributed over its particles; push() applies it
     };
     /// Cell size for filling a body of this matter within these bounds: that of the fluid that it would join, else its
-    /// own.
-    [[nodiscard]] double cell_size(const physics::FluidDefinition& matter, const Bounds& bounds);
+    /// own. It joins one of about its own cells, or one of whose bodies was told about the same by hand.
+    [[nodiscard]] double cell_size(const physics::FluidDefinition& matter, double set_cell_size, const Bounds& bounds);
     /// Adds particles of that cell size at these places (m, world), at rest; places in solids are left out. `matter`
     /// has neither volume nor velocity. The part is valid until remove().
     Result<Part*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
@@ -57,8 +58,15 @@ private:
         std::vector<std::unique_ptr<Part>> parts;  // by ids
         std::uint64_t version = 0;                 // of the particles at the time of `places`
     };
-    [[nodiscard]] SharedFluid* to_join(const physics::FluidDefinition& matter, const Bounds& bounds, double ratio_limit,
-                                       physics::FluidHandle except = {});
+    /// What a body of liquid asks of a fluid to be a part of it.
+    struct Wish {
+        const physics::FluidDefinition& matter;
+        const Bounds& bounds;
+        double ratio_limit = 1;    // of cell sizes
+        double set_cell_size = 0;  // m, told by hand; 0: none
+        physics::FluidHandle except;
+    };
+    [[nodiscard]] SharedFluid* to_join(const Wish& wish);
     [[nodiscard]] std::vector<SharedFluid>::iterator find(physics::FluidHandle fluid);
     void locate(SharedFluid& shared);
     [[nodiscard]] Bounds bounds_of(const Part& part);

@@ -96,7 +96,8 @@ Result<void> Simulation::State::put_points(LiveEntity& entity) {
     if (const auto* grains = std::get_if<GrainDefinition>(&definition.value()))
         finest_grain = std::min(finest_grain, grains->diameter);
     const auto* liquid = std::get_if<LiquidDefinition>(&definition.value());
-    if (liquid != nullptr && entity.form.note.empty()) entity.form.note = note_of(*liquid, *entity.points);
+    if (liquid != nullptr && entity.form.note.empty())
+        entity.form.note = note_of(*liquid, *as_liquid(entity.points.get()));
     return apply_settings();
 }
 

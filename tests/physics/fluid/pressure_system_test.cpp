@@ -172,7 +172,7 @@ TEST(PressureSystem, AFloatingBodyAndTheLiquidKeepTheirMomentum) {
     LiquidBlock block(h, particles, std::span(&box, 1));
     PressureSystem system;
     system.build(block.grid, {}, block.workers);
-    block.obstacles.list_areas(block.grid);
+    block.obstacles.list_areas(block.grid, {});
     MovingObstacle& moving = block.obstacles.moving().front();
     ASSERT_TRUE(moving.is_in_reach);
 

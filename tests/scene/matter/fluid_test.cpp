@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/physical_kind.h"
+#include "foundation/random.h"
 #include "scene/file/scene_file.h"
 #include "scene/live_scene.h"
 #include "scene/matter/fluid_filling.h"
@@ -367,6 +368,58 @@ TEST(Fluids, ThinnerThanTheirParticlesAreReported) {
     const auto simulation = make(document);
     ASSERT_EQ(simulation->notes().size(), 1u);
     EXPECT_NE(simulation->notes()[0].find("Puddle is 0.002 mm thick"), std::string::npos) << simulation->notes()[0];
+}
+
+TEST(Fluids, OfCellsSetAlikeAreOneThoughTheirBudgetsOverruleThem) {
+    // A pool and a heap of water, both told cells of 2 cm; the pool's would take more particles than it may have.
+    Random random(7);
+    for (int i = 0; i < 6; ++i) {
+        // The first one has its budget; the second one joins it with up to five times its own.
+        const double excess = i % 2 == 0 ? random.between(5, 20) : random.between(1.5, 4.5), cell = 0.02;
+        const Vec3 half{0.2, 0.08, 0.2};
+        const double pool_particles = 64 * half.x * half.y * half.z / (cell * cell * cell);
+        const auto add_water = [&](Document& document, const char* name, Vec3 size, double y, double budget) {
+            Words words = water(std::floor(budget));
+            words["fluid_cell_size"] = cell;
+            add_box(document, name, size, {0, y, 0}, words);
+        };
+        const auto add_pool = [&](Document& document) {
+            add_water(document, "Pool", half, half.y, pool_particles / excess);
+        };
+        const auto add_heap = [&](Document& document) { add_water(document, "Heap", {0.06, 0.04, 0.2}, 0.25, 20000); };
+        Document document = tub();
+        i % 2 == 0 ? add_pool(document) : add_heap(document);
+        i % 2 == 0 ? add_heap(document) : add_pool(document);
+        const auto simulation = make(document);
+        ASSERT_TRUE(simulation);
+        EXPECT_EQ(simulation->world().fluids().size(), 1u) << excess;
+        // The pool comes first: its cells are larger than told, and so are the heap's, which is one with it.
+        std::string notes;
+        for (const std::string& note : simulation->notes()) notes += note + "\n";
+        if (i % 2 == 0) {
+            EXPECT_NE(notes.find("Pool has cells of "), std::string::npos) << notes;
+            EXPECT_NE(notes.find("particle_budget is "), std::string::npos) << notes;
+            EXPECT_NE(notes.find("Heap has cells of "), std::string::npos) << notes;
+            EXPECT_NE(notes.find("it is one with other liquid"), std::string::npos) << notes;
+        }
+    }
+}
+
+TEST(Fluids, ThatTheirBudgetKeepsApartAreReported) {
+    Document document = tub();
+    for (const double budget : {20000.0, 1000.0}) {
+        Words words = water(budget);
+        words["fluid_cell_size"] = 0.02;
+        const bool is_pool = budget < 2000;
+        add_box(document, is_pool ? "Pool" : "Heap", is_pool ? Vec3{0.2, 0.08, 0.2} : Vec3{0.06, 0.04, 0.2},
+                {0, is_pool ? 0.08 : 0.25, 0}, words);
+    }
+    const auto simulation = make(document);
+    ASSERT_EQ(simulation->world().fluids().size(), 2u);
+    ASSERT_EQ(simulation->notes().size(), 1u);
+    const std::string note = simulation->notes()[0];
+    EXPECT_EQ(note.rfind("Pool has cells of ", 0), 0u) << note;
+    EXPECT_NE(note.find("does not see other liquid of its matter"), std::string::npos) << note;
 }
 
 TEST(Fluids, OfDifferentMatterThatOverlapAreReported) {

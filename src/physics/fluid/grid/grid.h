@@ -156,6 +156,7 @@ enum ThinMark : std::uint8_t {
     closed_y = 2,
     closed_z = 4,
     near_thin = 8,  ///< such a wall is within a cell: particles ask the true shapes
+    between = 16,   ///< two obstacles are at one of its faces
 };
 
 }  // namespace embody::physics::fluid

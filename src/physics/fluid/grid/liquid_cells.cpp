@@ -59,13 +59,52 @@ void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
     for (const MarkedCell& cell : marked) grid.surface[cell.cell] = cell.surface;
 }
 
+// Pressure of liquid that goes on to a cell from its neighbour, in direction `step`, as the last pressures there tell.
+float pressure_from(const FluidGrid& grid, int neighbour, int step) {
+    const float here = grid.pressure[neighbour], before = grid.pressure[neighbour - step];
+    return here > 0 && before > 0 ? 2 * here - before : here;
+}
+
+// Between obstacles less than a cell apart there is liquid as far as its pressure reaches, cell by cell
+// (docs/physics/fluids.md, "Films").
+void fill_gaps(FluidGrid& grid, std::vector<int>& gaps) {
+    std::vector<MarkedCell> layer;
+    std::vector<float> pressures;
+    do {
+        layer.clear();
+        pressures.clear();
+        std::erase_if(gaps, [&](int cell) { return grid.surface[cell] < 0; });
+        for (const int cell : gaps) {
+            float sum = 0, pressure = 0;
+            int count = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int stride = grid.stride(axis);
+                for (const int step : {-stride, stride}) {
+                    const int other = cell - step;
+                    if (grid.open[axis][std::max(cell, other)] <= 0 || !(grid.surface[other] < 0)) continue;
+                    const float found = pressure_from(grid, other, step);
+                    if (!(found > 0)) continue;
+                    sum += grid.surface[other];
+                    pressure += found;
+                    ++count;
+                }
+            }
+            if (count == 0) continue;
+            layer.push_back({cell, sum / static_cast<float>(count)});
+            pressures.push_back(pressure / static_cast<float>(count));
+        }
+        mark(grid, layer);
+        for (std::size_t i = 0; i < layer.size(); ++i) grid.pressure[layer[i].cell] = pressures[i];
+    } while (!layer.empty());
+}
+
 // Narrow cells are liquid beside liquid, those in corners beside such narrow cells; holes with liquid all around are
 // filled.
 void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
     struct Found {
         std::vector<MarkedCell> marked;
-        std::vector<int> narrow;
+        std::vector<int> narrow, between;
     };
     const float min_room = settings.min_room;
     std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
@@ -77,6 +116,7 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
                 look_around({grid, min_room, false}, cell, own.marked);
                 const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
                 if (is_dry && grid.room[cell] < min_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
+                if (is_dry && (grid.thin[cell] & between)) own.between.push_back(cell);
             });
         }
     });
@@ -88,6 +128,9 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
         }
         mark(grid, marked);
     }
+    std::vector<int> gaps;
+    for (const Found& own : found) gaps.insert(gaps.end(), own.between.begin(), own.between.end());
+    fill_gaps(grid, gaps);
 }
 
 // What bends may fill many cells: the surface goes on through them, layer by layer from around, each as the mean of its

@@ -179,9 +179,10 @@ void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& gri
 }
 
 // Where obstacles overlap, the space counts for the first one.
-void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) const {
+void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) {
     const float min_open = settings_.min_open;
     if (!moving.is_in_reach) return;
+    const bool is_convex = moving.probe.is_convex();
     const ObstacleRegion& region = moving.region;
     const Cell &lower = region.lower(), &upper = region.upper();
     moving.bound.clear();
@@ -194,6 +195,7 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                 const int cell = grid.index(c), here = region.index(c);
                 for (int axis = 0; axis < 3; ++axis) {
                     float& open = grid.open[axis][cell];
+                    if (region.fraction(axis, here) > 0 && open < 1) films_.meet(grid, axis, c);
                     float fraction = std::min(region.fraction(axis, here), open);
                     if (open - fraction < min_open) fraction = open;
                     moving.fraction[axis][here] = fraction;
@@ -207,6 +209,7 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                 }
                 grid.room[cell] *= region.room(here);
                 grid.thin[cell] |= region.thin(here);
+                if (!is_convex && region.thin(here) != 0) films_.close(grid, cell, region.thin(here));
             }
         }
     }
@@ -260,6 +263,7 @@ void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     parallel_for(workers, moving_.size(), moving_.size() > 1, [&](int, IndexRange range) {
         for (std::size_t i = range.first; i < range.last; ++i) measure_moving(moving_[i], grid);
     });
+    films_.begin(grid);
     for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
 
     // A cell that is shut all around is obstacle, even if its centre is on the seam of two obstacles.
@@ -281,7 +285,8 @@ void FluidObstacles::accelerate(double dt) {
     }
 }
 
-void FluidObstacles::list_areas(const FluidGrid& grid) {
+void FluidObstacles::list_areas(const FluidGrid& grid, Vec3 weight) {
+    films_.find(grid, weight);
     const double h = grid.cell_size();
     for (MovingObstacle& moving : moving_) {
         moving.areas.clear();
@@ -293,8 +298,10 @@ void FluidObstacles::list_areas(const FluidGrid& grid) {
                 for (int x = low[0]; x < high[0]; ++x) {
                     const Cell c{x, y, z};
                     if (!grid.is_active(c)) continue;
-                    const int row = grid.row[grid.index(c)];
-                    if (row < 0) continue;
+                    const int cell = grid.index(c);
+                    const Films::Pressure pressure =
+                        grid.row[cell] < 0 ? films_.pressure(cell) : Films::Pressure{grid.row[cell], 0};
+                    if (pressure.row < 0) continue;
                     Vec3 area;
                     for (int axis = 0; axis < 3; ++axis) {
                         Cell next = c;
@@ -303,7 +310,8 @@ void FluidObstacles::list_areas(const FluidGrid& grid) {
                         area[axis] = (above - moving.fraction[axis][region.index(c)]) * h * h;
                     }
                     if (area == Vec3{}) continue;
-                    moving.areas.push_back({row, area, cross(grid.center(c) - moving.center, area)});
+                    const Vec3 moment = cross(grid.center(c) - moving.center, area);
+                    moving.areas.push_back({pressure.row, area, moment, pressure.head});
                 }
             }
         }

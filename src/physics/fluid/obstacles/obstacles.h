@@ -7,6 +7,7 @@
 #include "math/transform.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/obstacles/films.h"
 #include "physics/fluid/obstacles/obstacle_probe.h"
 #include "physics/fluid/obstacles/obstacle_region.h"
 #include "physics/fluid/pressure/bound_liquid.h"
@@ -34,6 +35,7 @@ struct FluidObstacle {
 struct ObstacleArea {
     int row = 0;
     Vec3 area, moment;
+    double head = 0;  ///< Pa, beyond the cell's pressure, where the area is at a film that begins there
 };
 
 /// An obstacle that is or may be in motion, through the parts of a step.
@@ -79,8 +81,8 @@ public:
     void measure(double dt, FluidGrid& grid, TaskPool& workers);
     /// Forces but the fluid's change velocities.
     void accelerate(double dt);
-    /// Once rows are known.
-    void list_areas(const FluidGrid& grid);
+    /// Once rows are known. `weight`: of the liquid, N/m³.
+    void list_areas(const FluidGrid& grid, Vec3 weight);
     /// Moves on to the end of the part.
     void advance(double dt);
     /// After the parts of a step.
@@ -100,7 +102,7 @@ private:
     void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<ObstacleProbe>& probes,
                              ObstacleRegion& region);
     static void measure_moving(MovingObstacle& moving, const FluidGrid& grid);
-    void place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) const;
+    void place_moving(MovingObstacle& moving, int owner, FluidGrid& grid);
 
     /// Where a step left a body.
     struct LeftBody {
@@ -114,6 +116,7 @@ private:
     Vec3 origin_;
     FluidObstacleSettings settings_;  // of the last begin()
     std::vector<MovingObstacle> moving_;
+    Films films_;
     std::vector<LeftBody> left_;
     std::vector<ObstacleProbe> fixed_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;

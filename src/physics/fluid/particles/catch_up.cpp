@@ -62,7 +62,7 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
     });
     ImmersedPoints::leave(grid_);
     system_.build(grid_, settings_, workers);
-    obstacles_.list_areas(grid_);
+    obstacles_.list_areas(grid_, {});
     outflow(grid_, obstacles_, system_, flow_, workers);
     for (double& flow : flow_) flow *= -1 / h;
     potential_.assign(system_.size(), 0);
