@@ -232,6 +232,10 @@ void add_soft_and_cloth(Rows& rows) {
     soft.number({"internal_pressure", "V", "Internal pressure",
                  "Of gas inside, above that of the air around; its form is the one that it has under this pressure."},
                 "Pa", 0, 0, 1e8);
+    soft.whole({"soft_resolution", "V", "Resolution",
+                "Elements across its thinnest extent: more are more exact and cost more. 0: as many as bending and "
+                "twisting need."},
+               0, 0, 12);
     const Group cloth{rows, "cloth", "Cloth"};
     cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
     cloth.number({"thickness", "C", "Thickness", "Of the cloth: its layers stay that far apart."}, "m", 5e-4, 1e-6,

@@ -532,7 +532,12 @@ Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double
     return parts;
 }
 
-Result<SoftMesh> Catalog::soft_mesh(std::int64_t id) const {
+Result<SoftMesh> Catalog::soft_mesh(std::int64_t id, int resolution) const {
+    if (resolution > 0) {
+        const auto surface = mesh(id);
+        if (!surface) return surface.error();
+        return make_soft_mesh(*surface, resolution);
+    }
     database::SimulationMeshTable table(*state_->connection);
     const auto stored = table.find(id, attributes::to_text(attributes::PhysicalKind::soft));
     if (!stored) return stored.error();

@@ -161,7 +161,7 @@ public:
 
     /// The tetrahedra of a soft model: as the import made them, or made now (some tenths of a second) and kept for the
     /// next time. Why it cannot be soft is kept, too.
-    Result<SoftMesh> soft_mesh(std::int64_t id) const;
+    Result<SoftMesh> soft_mesh(std::int64_t id, int resolution = 0) const;
 
     /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar); without paths, the folders of the
     /// collection in the options. Fails only if nothing can be imported at all; what is wrong with single files is in

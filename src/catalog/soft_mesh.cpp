@@ -23,18 +23,25 @@ constexpr std::size_t max_nodes = 100'000;
 constexpr double max_surplus = 1.3;
 constexpr double max_flatness = 8;
 
-// Two of the lattice's cubes across the thickness, with 12 tetrahedra each. Thickness is the smallest extent, or for
-// hollow or branched bodies that of a plate of as much surface, and half of it more for edges: 3 V/A (ball: half its
-// diameter).
-int wanted_tetrahedra(double volume, double area, Vec3 size) {
-    const double thickness = std::min(std::min({size.x, size.y, size.z}), 3 * volume / area);
+// The smallest extent, or for hollow or branched bodies that of a plate of as much surface, and half of it more for
+// edges: 3 V/A (ball: half its diameter).
+double thickness_of(double volume, double area, Vec3 size) {
+    return std::min(std::min({size.x, size.y, size.z}), 3 * volume / area);
+}
+
+// Two of the lattice's cubes across the thickness, with 12 tetrahedra each.
+int wanted_tetrahedra(double volume, double thickness) {
     const double cell = thickness / 2;
     const double count = 12 * volume / (cell * cell * cell);
     if (!(count < max_soft_tetrahedra)) return max_soft_tetrahedra;
     return std::max(min_soft_tetrahedra, static_cast<int>(count));
 }
 
-Error cannot_be_soft(std::string why, std::string remedy) { return {"soft mesh", std::move(why), std::move(remedy)}; }
+constexpr const char* soft_mesh_place = "soft mesh";
+
+Error cannot_be_soft(std::string why, std::string remedy) {
+    return {soft_mesh_place, std::move(why), std::move(remedy)};
+}
 
 std::string percent(double fraction) { return std::to_string(std::lround(100 * fraction)) + " %"; }
 
@@ -61,10 +68,24 @@ struct Filled {
     double flatness = 1;
 };
 
-// Cubes, or where that takes too many, cells as if the body were thicker, which makes them flat.
-Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, Vec3 size) {
+// Cubes, so many across the thickness.
+Result<Filled> fill_with(const geometry::TriangleMesh& welded, double volume, double thickness, int resolution) {
+    const double cell = thickness / resolution, wanted = 12 * volume / (cell * cell * cell);
+    const auto limit = static_cast<double>(max_resolved_tetrahedra);
+    if (!(wanted < 2 * limit)) return too_fine(resolution, static_cast<std::size_t>(std::min(wanted, 1e12)));
     geometry::TetrahedralParameters parameters;
-    parameters.tetrahedra = wanted_tetrahedra(volume, geometry::surface_area(welded), size);
+    parameters.cell = cell;
+    auto filling = geometry::fill_with_tetrahedra(welded, parameters);
+    if (!filling) return filling.error();
+    const std::size_t count = filling->mesh.tetrahedra.size();
+    if (count > max_resolved_tetrahedra) return too_fine(resolution, count);
+    return Filled{std::move(*filling), 1};
+}
+
+// Cubes, or where that takes too many, cells as if the body were thicker, which makes them flat.
+Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, double thickness, Vec3 size) {
+    geometry::TetrahedralParameters parameters;
+    parameters.tetrahedra = wanted_tetrahedra(volume, thickness);
     auto filling = geometry::fill_with_tetrahedra(welded, parameters);
     if (!filling) return filling.error();
     Filled filled{std::move(*filling), 1};
@@ -106,13 +127,23 @@ void to_single_precision(std::vector<Vec3>& nodes) {
 
 }  // namespace
 
-Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface) {
+Error too_fine(int resolution, std::size_t tetrahedra) {
+    return cannot_be_soft("its soft_resolution of " + std::to_string(resolution) + " takes " +
+                              std::to_string(tetrahedra) + " tetrahedra, more than " +
+                              std::to_string(max_resolved_tetrahedra),
+                          "give it a lower soft_resolution, or 0");
+}
+
+Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface, int resolution) {
     const Vec3 size = geometry::bounds(surface).size();
     const geometry::TriangleMesh welded = geometry::weld(surface, weld_fraction * std::max({size.x, size.y, size.z}));
     const geometry::VolumeEstimate estimate = geometry::estimate_volume(welded);
     if (estimate.method == geometry::VolumeMethod::no_volume)
         return cannot_be_soft("its surface encloses nothing", "make it rigid, or cloth if it is a sheet");
-    auto made = fill(welded, estimate.solid.volume, size);
+    const double volume = estimate.solid.volume, thickness = thickness_of(volume, geometry::surface_area(welded), size);
+    auto made =
+        resolution > 0 ? fill_with(welded, volume, thickness, resolution) : fill(welded, volume, thickness, size);
+    if (!made && made.error().where == soft_mesh_place) return made.error();
     if (!made) return cannot_be_soft("its surface " + made.error().why, "make it rigid, or cloth if it is a sheet");
     geometry::TetrahedralFilling* filled = &made->filling;
     if (filled->volume_fraction < min_volume_fraction)
@@ -182,7 +213,7 @@ Result<SoftMesh> soft_mesh_from(const database::StoredSimulationMesh& stored) {
         }
     }
     if (!in.is_complete() || soft.mesh.tetrahedra.empty() || !(soft.cell > 0))
-        return Error{"soft mesh", "is damaged", "import the model again"};
+        return Error{soft_mesh_place, "is damaged", "import the model again"};
     geometry::find_surface(soft.mesh);
     return soft;
 }

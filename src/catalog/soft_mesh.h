@@ -18,12 +18,17 @@ struct SoftMesh {
 };
 
 inline constexpr int min_soft_tetrahedra = 300, max_soft_tetrahedra = 2000;
+/// Maximum with a resolution that a person chose: some 15 ms a step.
+inline constexpr std::size_t max_resolved_tetrahedra = 20000;
+/// The error of a resolution that takes so many tetrahedra.
+Error too_fine(int resolution, std::size_t tetrahedra);
 
 /// Fills what the surface encloses, two cells across its thickness where 300 to 2,000 tetrahedra allow it
 /// (docs/import.md: Soft things); what is so flat that cubes would be too many is cut from flat cells, up to 8 times as
-/// wide as thick. Same surface, same mesh. The error says why the thing cannot be soft: nothing enclosed, nearly all of
-/// it too thin, or several things that do not hang together.
-Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface);
+/// wide as thick. With a `resolution` there are so many cubes across the thickness instead. Same surface, same mesh.
+/// The error says why the thing cannot be soft: nothing enclosed, nearly all of it too thin, or several things that do
+/// not hang together.
+Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface, int resolution = 0);
 
 /// The mesh as the database has it, or why there is none.
 database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh);

@@ -32,6 +32,23 @@ TEST(SoftMesh, CountFollowsTheFormNotTheSize) {
     EXPECT_GT(cushion->cell, 0.05) << "and not three";
 }
 
+TEST(SoftMesh, AResolutionSaysHowManyCellsLieAcross) {
+    const double thickness = 3 * 0.024 / 0.56;  // 3 V/A, which is less than its height
+    for (const int resolution : {1, 2, 3, 4}) {
+        const auto cushion = make_soft_mesh(box({0.4, 0.15, 0.4}), resolution);
+        ASSERT_TRUE(cushion) << cushion.error().message();
+        EXPECT_NEAR(cushion->cell, thickness / resolution, 1e-6);
+        EXPECT_EQ(cushion->flatness, 1);
+    }
+    for (const Vec3 size : {Vec3{2, 0.2, 0.9}, Vec3{2, 0.001, 2}}) {
+        const auto too_many = make_soft_mesh(box(size), 12);
+        ASSERT_FALSE(too_many);
+        EXPECT_NE(too_many.error().why.find("soft_resolution of 12 takes"), std::string::npos)
+            << too_many.error().message();
+        EXPECT_FALSE(too_many.error().remedy.empty());
+    }
+}
+
 TEST(SoftMesh, FlatThingsAreCutFromFlatCells) {
     for (const Vec3 size : {Vec3{0.6, 0.01, 0.6}, {0.02, 0.6, 0.6}, {2, 1, 0.05}, {1, 0.01, 0.02}}) {
         const auto flat = make_soft_mesh(box(size));

@@ -3,6 +3,7 @@
 
 #include "attributes/physical_kind.h"
 #include "scene/embody/shape_surface.h"
+#include "scene/embody/soft_primitive.h"
 
 namespace embody::scene {
 
@@ -17,26 +18,31 @@ int count_of(const attributes::AttributeSet& attributes) {
 
 }  // namespace
 
-Result<const catalog::SoftMesh*> EntityMeshes::soft_mesh(const Entity& entity) {
+Result<const catalog::SoftMesh*> EntityMeshes::soft_mesh(const Entity& entity,
+                                                         const attributes::AttributeSet& attributes) {
     const GeometryKey key = key_of(entity.geometry);
-    auto found = forms_->soft_meshes.find(key);
-    if (!key.is_shared() || found == forms_->soft_meshes.end()) {
-        found = forms_->soft_meshes.insert_or_assign(key, make_soft_mesh(entity)).first;
+    const int resolution = static_cast<int>(attributes.number("soft_resolution", 0));
+    auto& meshes = forms_->soft_meshes[key];
+    auto found = meshes.find(resolution);
+    if (!key.is_shared() || found == meshes.end()) {
+        found = meshes.insert_or_assign(resolution, make_soft_mesh(entity, resolution)).first;
         ++forms_->made;
     }
     if (!found->second.ok()) return found->second.error();
     return &found->second.value();
 }
 
-Result<catalog::SoftMesh> EntityMeshes::make_soft_mesh(const Entity& entity) {
+Result<catalog::SoftMesh> EntityMeshes::make_soft_mesh(const Entity& entity, int resolution) {
     if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
         const Result<const KnownModel*> known = models_.find(model->key);
         if (!known.ok()) return known.error();
-        return models_.catalog()->soft_mesh(known.value()->summary.id);
+        return models_.catalog()->soft_mesh(known.value()->summary.id, resolution);
     }
-    const auto surface = surface_of(std::get<physics::ShapeDefinition>(entity.geometry));
+    const auto& shape = std::get<physics::ShapeDefinition>(entity.geometry);
+    if (auto primitive = soft_primitive(shape, resolution)) return std::move(*primitive);
+    const auto surface = surface_of(shape);
     if (!surface) return surface.error();
-    return catalog::make_soft_mesh(*surface);
+    return catalog::make_soft_mesh(*surface, resolution);
 }
 
 Result<const ThinForm*> EntityMeshes::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {

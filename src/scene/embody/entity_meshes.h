@@ -21,7 +21,7 @@ public:
     EntityMeshes(KnownModels& models, std::shared_ptr<FormCache> forms) : models_(models), forms_(std::move(forms)) {}
 
     /// The tetrahedra of an entity of kind soft.
-    Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
+    Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The sheet of an entity of kind cloth, the line of one of kind rope.
     Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Forgets the meshes of a model.
@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity);
+    Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity, int resolution);
     Result<ThinForm> make_thin_form(const Entity& entity, bool is_cloth, int count);
 
     KnownModels& models_;

@@ -27,7 +27,7 @@ GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& att
 
 // Equal keys mean equal nodes of a deformable.
 GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments"});
+    GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments", "soft_resolution"});
     key.numbers.push_back(entity.scale);
     return key;
 }
@@ -45,7 +45,7 @@ Result<void> EntityPoints::check_kept(const Entity& entity, const attributes::At
 }
 
 EntityForm EntityPoints::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity);
+    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity, attributes);
     if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why, {}};
     EntityForm soft{true, deformable_key(entity, attributes), {}, {}};
     soft.kept_fit = fit_of_mesh(soft.points_key, entity.geometry, *mesh.value());

@@ -30,7 +30,7 @@ std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>&
 
 Result<physics::DeformableDefinition> EntityPoints::soft(const Entity& entity,
                                                          const attributes::AttributeSet& attributes) {
-    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity);
+    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity, attributes);
     if (!mesh.ok()) return mesh.error();
     geometry::TetrahedralMesh scaled = mesh.value()->mesh;
     for (Vec3& node : scaled.nodes) node *= entity.scale;

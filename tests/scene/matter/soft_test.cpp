@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "attributes/physical_kind.h"
 #include "geometry/mass_properties.h"
@@ -186,6 +187,61 @@ TEST(Soft, IsMeshedOnceHoweverOftenTheSceneIsReset) {
     EXPECT_EQ(forms->soft_meshes.size(), 2u) << "the one before may come back by undo";
 }
 
+TEST(Soft, IsComputedOnAsManyElementsAcrossAsItsResolutionSays) {
+    const ShapeDefinition shapes[] = {BoxShape{{0.2, 0.1, 0.2}}, physics::CylinderShape{0.1, 0.2},
+                                      physics::CapsuleShape{0.1, 0.1}, physics::SphereShape{0.1},
+                                      physics::ConeShape{0.1, 0.1}};
+    for (const ShapeDefinition& shape : shapes) {
+        SCOPED_TRACE(physics::shape_name(shape));
+        Document document = a_cushion();
+        document.entities[1].geometry = shape;
+        std::size_t before = 0;
+        for (const double resolution : {1, 2, 3, 4}) {
+            document.entities[1].attributes["soft_resolution"] = resolution;
+            const auto simulation = make(document);
+            ASSERT_TRUE(simulation && simulation->points(cushion)) << resolution;
+            const std::size_t nodes = points_of(*simulation).size();
+            EXPECT_GT(nodes, before) << resolution;
+            EXPECT_NEAR(simulation->points(cushion)->mass(), 1, 1e-9);
+            before = nodes;
+        }
+    }
+    // Across the width of a box there are as many layers of corners and of middles.
+    Document document = a_cushion();
+    document.entities[1].attributes["soft_resolution"] = 4.0;
+    std::set<double> heights;
+    for (const Vec3 p : points_of(*make(document))) heights.insert(std::round(1e6 * p.y));
+    EXPECT_EQ(heights.size(), 2 * 4 + 1u);
+}
+
+TEST(Soft, AResolutionThatTakesTooManyElementsIsRefusedWithARemedy) {
+    for (const ShapeDefinition& shape :
+         {ShapeDefinition{BoxShape{{1, 0.01, 1}}}, ShapeDefinition{physics::ConeShape{1, 0.02}}}) {
+        Document document = a_cushion();
+        document.entities[1].geometry = shape;
+        document.entities[1].attributes["soft_resolution"] = 12.0;
+        const auto simulation = make(document);
+        ASSERT_TRUE(simulation);
+        EXPECT_FALSE(simulation->points(cushion));
+        ASSERT_EQ(simulation->notes().size(), 1u);
+        EXPECT_NE(simulation->notes()[0].find("its soft_resolution of 12 takes"), std::string::npos)
+            << simulation->notes()[0];
+    }
+}
+
+TEST(Soft, AChangeOfItsResolutionMakesItAnewAndIsUndone) {
+    Document document = a_cushion();
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    const std::vector<Vec3> first = points_of(*simulation);
+    document.entities[1].attributes["soft_resolution"] = 4.0;
+    ASSERT_TRUE(simulation->update(document.entities[1], true));
+    EXPECT_GT(points_of(*simulation).size(), first.size());
+    document.entities[1].attributes.erase("soft_resolution");
+    ASSERT_TRUE(simulation->update(document.entities[1], true));
+    EXPECT_EQ(points_of(*simulation).size(), first.size());
+}
+
 TEST(Soft, WhatIsFlatIsComputedCoarselyAndSaysSo) {
     Document document = a_cushion(0.02);
     document.entities[1].geometry = ShapeDefinition{BoxShape{{0.3, 0.005, 0.3}}};
@@ -194,7 +250,7 @@ TEST(Soft, WhatIsFlatIsComputedCoarselyAndSaysSo) {
     ASSERT_TRUE(simulation->points(cushion));
     EXPECT_LT(as_soft(simulation->points(cushion))->definition().nodes.size(), 1000u);
     ASSERT_EQ(simulation->notes().size(), 1u);
-    EXPECT_NE(simulation->notes()[0].find("4 times as wide as thick"), std::string::npos) << simulation->notes()[0];
+    EXPECT_NE(simulation->notes()[0].find("5 times as wide as thick"), std::string::npos) << simulation->notes()[0];
     step(*simulation, 60);
     EXPECT_NEAR(simulation->points(cushion)->center_of_mass().y, 0.005, 0.005) << "it lies on the floor";
 }

@@ -9,10 +9,10 @@ namespace embody::physics {
 
 /// Soft solids: their elements and their step (src/physics/deformable/solid).
 struct SolidSettings {
-    /// Fraction of the volume whose deformation is that of the means around the nodes; the rest has that of the
-    /// tetrahedra, which bend too stiffly. Source: fitted to a cantilever, docs/physics/deformables.md; the method is
+    /// Fraction of the energy of a change of form that is told by the means around the nodes; the rest is told by the
+    /// tetrahedra, which bend too stiffly. Source: fitted to bars and rods, docs/physics/deformables.md; the method is
     /// of G. R. Liu, T. Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008. Test:
-    /// SoftSolid.ACantileverBendsByItsOwnWeight.
+    /// SoftLaws.BarsTwistAsSaintVenantSays, SoftLaws.CantileversBendAsTimoshenkoSays.
     double node_fraction = 0.7;
     /// Plastic strain beyond which matter flows no further, so that no element is rolled out to zero thickness. Source:
     /// J. F. O'Brien, A. W. Bargteil, J. K. Hodgins, "Graphical modeling and animation of ductile fracture", 2002,

@@ -53,6 +53,16 @@ SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
     gradient_f_.resize(size());
     node_rotation_f_.resize(rest.size());
     node_stress_f_.resize(rest.size());
+    set(settings_);
+}
+
+// Of the energy μ |dev ε|² + K/2 tr² ε the elements have a part of the first term, the means around the nodes the rest:
+// λ = K - 2 μ/3 of each.
+void SolidElements::set(const SolidSettings& settings) {
+    settings_ = settings;
+    element_moduli_.mu = (1 - settings.node_fraction) * mu_;
+    element_moduli_.lambda = -2.0 / 3 * element_moduli_.mu;
+    node_moduli_ = {mu_ - element_moduli_.mu, lambda_ - element_moduli_.lambda};
 }
 
 void SolidElements::find_surroundings(std::size_t nodes) {
@@ -120,11 +130,11 @@ Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) 
 }
 
 // Elastic and damping stress: the latter of β/h times the change of the stretch Rᵀ F.
-Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
-                           double damping_rate) const {
+Mat3 SolidElements::stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
+                           const Mat3& start_stretch, double damping_rate) {
     const Mat3 r = to_matrix(rotation), stretch = symmetric_part(transpose(r) * deformation);
     const Mat3 strain = stretch - Mat3::identity() - plastic + damping_rate * (stretch - start_stretch);
-    return turned_stress(r, strain, mu_, lambda_);
+    return turned_stress(r, strain, moduli.mu, moduli.lambda);
 }
 
 // Rᵀ F at the start of a substep, before it turned to `rotation`. The square of small turns is negligible, as long as
@@ -162,7 +172,6 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         rotation_f_[e] = to_single(rotation_[e]);
     }
     // Means around the nodes.
-    const double node_fraction = settings_.node_fraction;
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         const Mat3 deformation = mean_around(i, deformation_);
         const Quat before = node_rotation_[i];
@@ -171,12 +180,13 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         const Mat3 at_start =
             damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i], damping_rate)
                          : Mat3::zero();
-        node_stress_[i] = stress(deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
+        node_stress_[i] =
+            stress(node_moduli_, deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
     }
     for (std::size_t e = 0; e < size(); ++e) {
         Mat3 whole =
-            (1 - node_fraction) * stress(deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
-        for (const std::uint32_t node : corners_[e]) whole += (node_fraction / 4) * node_stress_[node];
+            stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
+        for (const std::uint32_t node : corners_[e]) whole += 0.25 * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -189,9 +199,9 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
 }
 
 void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force) {
-    const auto mu = static_cast<float>(mu_), lambda = static_cast<float>(lambda_);
     // R (μ (W + Wᵀ) + λ tr W) of a move's gradient G, W = Rᵀ G
-    const auto stress_of = [&](const float* r, const float* g, float* s) {
+    const auto stress_of = [](const Moduli& moduli, const float* r, const float* g, float* s) {
+        const auto mu = static_cast<float>(moduli.mu), lambda = static_cast<float>(moduli.lambda);
         float w[9];
         for (int c = 0; c < 3; ++c) {
             for (int row = 0; row < 3; ++row)
@@ -229,18 +239,16 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
             const auto fraction = static_cast<float>(a.fraction);
             for (int k = 0; k < 9; ++k) g[k] += fraction * gradient_f_[a.element].value[k];
         }
-        stress_of(node_rotation_f_[i].value, g, node_stress_f_[i].value);
+        stress_of(node_moduli_, node_rotation_f_[i].value, g, node_stress_f_[i].value);
     }
-    const auto own_fraction = static_cast<float>(1 - settings_.node_fraction),
-               one_node_fraction = static_cast<float>(settings_.node_fraction / 4);
     for (std::size_t e = 0; e < size(); ++e) {
         float s[9];
-        stress_of(rotation_f_[e].value, gradient_f_[e].value, s);
+        stress_of(element_moduli_, rotation_f_[e].value, gradient_f_[e].value, s);
         const float scale = factor * static_cast<float>(volume_[e]);
         for (int k = 0; k < 9; ++k) {
             float around_it = 0;
             for (const std::uint32_t node : corners_[e]) around_it += node_stress_f_[node].value[k];
-            s[k] = scale * (own_fraction * s[k] + one_node_fraction * around_it);
+            s[k] = scale * (s[k] + 0.25f * around_it);
         }
         Vec3f sum;
         const auto add = [](Vec3f& to, float x, float y, float z) { to = {to.x + x, to.y + y, to.z + z}; };
@@ -256,21 +264,20 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
 }
 
 double SolidElements::energy(std::span<const Vec3> position) const {
-    const auto density = [&](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
+    const auto density = [](const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic) {
         follow_rotation(deformation, rotation);
         const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
-        return mu_ * squares(off) + lambda_ / 2 * trace(off) * trace(off);
+        return moduli.mu * squares(off) + moduli.lambda / 2 * trace(off) * trace(off);
     };
-    const double node_fraction = settings_.node_fraction;
     double sum = 0;
     std::vector<Mat3> deformation(size());
     for (std::size_t e = 0; e < size(); ++e) {
         deformation[e] = gradient(e, position);
-        sum += (1 - node_fraction) * volume_[e] * density(deformation[e], rotation_[e], plastic_[e]);
+        sum += volume_[e] * density(element_moduli_, deformation[e], rotation_[e], plastic_[e]);
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         const Mat3 mean = mean_around(i, deformation);
-        sum += node_fraction * node_volume_[i] * density(mean, node_rotation_[i], node_plastic_[i]);
+        sum += node_volume_[i] * density(node_moduli_, mean, node_rotation_[i], node_plastic_[i]);
     }
     return sum;
 }

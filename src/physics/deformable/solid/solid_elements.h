@@ -17,16 +17,18 @@ namespace embody::physics::deformable {
 ///
 /// with F = Σ x gᵀ the deformation and R the rotation in it. Above the yield stress (von Mises) it flows: a plastic
 /// strain, taken off Rᵀ F - 1, follows at the end of each substep (flow()). Gas inside under pressure p pulls the
-/// matter taut, which resists a change of form by p/2 more in μ. A part of the volume has the F of the tetrahedra,
-/// which alone bend too stiffly, the rest the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
-/// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the change of Rᵀ F
+/// matter taut, which resists a change of form by p/2 more in μ. Of the energy of a change of form a part has the F of
+/// the tetrahedra, which alone bend too stiffly, the rest the means of F around the nodes, which alone bend too softly
+/// (G. R. Liu, T. Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). All energy of a change of
+/// volume has those means, since tetrahedra of nearly incompressible matter lock (J. Bonet, A. J. Burton, "A simple
+/// average nodal pressure tetrahedral element", 1998). Damping is proportional to the change of Rᵀ F
 /// in the substep, which is zero for turns.
 class SolidElements {
 public:
     SolidElements(const SoftSolid& solid, std::span<const Vec3> rest);
 
     /// Of the world in this substep; before the others, else the defaults count.
-    void set(const SolidSettings& settings) { settings_ = settings; }
+    void set(const SolidSettings& settings);
 
     [[nodiscard]] std::size_t size() const { return corners_.size(); }
     /// Nodes of each tetrahedron, turned so that its volume is positive.
@@ -74,8 +76,11 @@ private:
         return {around_.data() + first_around_[node], first_around_[node + 1] - first_around_[node]};
     }
     [[nodiscard]] Mat3 gradient(std::size_t element, std::span<const Vec3> values) const;
-    [[nodiscard]] Mat3 stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
-                              double damping_rate) const;
+    struct Moduli {  ///< Lamé's, Pa
+        double mu = 0, lambda = 0;
+    };
+    [[nodiscard]] static Mat3 stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
+                                     const Mat3& start_stretch, double damping_rate);
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     void limit_strain(Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
@@ -85,6 +90,7 @@ private:
 
     SolidSettings settings_;
     double mu_, lambda_, damping_, yield_stress_;
+    Moduli element_moduli_, node_moduli_;  ///< parts of the energy; their sum is the matter's
     std::vector<std::array<std::uint32_t, 4>> corners_;
     std::vector<std::array<Vec3, 3>> gradient_;  ///< of corners 1 to 3, 1/m; that of corner 0 is minus their sum
     std::vector<double> volume_;                 ///< m³
