@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "physics/deformable/cloth/cloth_sheet.h"
+#include "physics/deformable/contact/free_motion.h"
 #include "physics/deformable/rope/rope_line.h"
 
 namespace embody::physics::deformable {
@@ -85,7 +86,11 @@ struct DeformableScene {
             if (solves == substep.settings.cloth.max_solves || !next.choose(moves, body_moves, false)) break;
             touch = std::move(next);
         }
-        deformable.finish(substep, moves, body_moves, true, bodies);
+        if (deformable.is_free()) {
+            const FreePart part{&deformable.nodes(), deformable.impulses(substep, moves), moves};
+            keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
+        }
+        deformable.finish(substep, moves, body_moves, bodies);
         deformable.move_nodes(moves, substep.h);
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.

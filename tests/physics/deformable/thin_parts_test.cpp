@@ -114,7 +114,8 @@ TEST(FreeMotion, KeepsMomentaAndGivenDisplacements) {
             wanted_linear += p;
             wanted_angular += cross(nodes.position[i], p);
         }
-        keep_momenta(nodes, given, h, {}, moves);
+        const FreePart part{&nodes, given, moves};
+        keep_momenta(std::span(&part, 1), h, {});
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             linear += nodes.mass[i] * moves[i] / h;
             angular += cross(nodes.position[i], nodes.mass[i] * moves[i] / h);

@@ -240,9 +240,13 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
     });
 }
 
-// Only while no external forces but weight, air and liquids act. `by_flow`: impulses, N s.
-void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> by_flow, std::span<Vec3> moves) const {
+bool ClothSheet::is_free() const {
+    return std::ranges::none_of(fixed_, [](std::uint8_t fixed) { return fixed != 0; }) && !springs_.any_acts();
+}
+
+std::vector<Vec3> ClothSheet::impulses(const Substep& substep, std::span<const Vec3> moves) const {
     const double h = substep.h;
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
     for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
@@ -250,7 +254,7 @@ void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> by_
         for (const std::uint32_t node : triangles_[t].node)
             all[node] += dot(air_[t], h * winds_[t] - moves[node]) * air_[t];
     }
-    keep_momenta(nodes_, all, h, substep.settings.thin_contact, moves);
+    return all;
 }
 
 std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskPool& workers) {
@@ -277,13 +281,9 @@ void ClothSheet::freeze() {
 }
 
 void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
-                        bool is_alone, std::span<TouchedBody> bodies) {
-    const auto acts = [](const TouchSpring& spring) { return spring.acts; };
-    const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
+                        std::span<TouchedBody> bodies) {
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
-    if (is_alone && !is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
-        keep_momentum(substep, by_flow, moves);
     springs_.finish(moves, body_moves, substep, bodies);
 }
 

@@ -35,9 +35,13 @@ public:
     /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Ends it with these moves (m), which touch() was solved with, and changes them where the solve could not know.
-    /// `is_alone`: no other sheet or rope pulls or pushes it, so its momenta are kept. Pushes the bodies.
-    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves, bool is_alone,
+    /// Pushes the bodies.
+    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
                 std::span<TouchedBody> bodies);
+    /// Whether nothing but weight, air, liquids and other sheets and ropes acts on it.
+    [[nodiscard]] bool is_free() const;
+    /// What weight, air and liquids give each node in a substep with these moves, N s.
+    [[nodiscard]] std::vector<Vec3> impulses(const Substep& substep, std::span<const Vec3> moves) const;
     /// Moves the nodes by these moves (m) in h seconds.
     void move_nodes(std::span<const Vec3> moves, double h);
     /// Stops it for good where it is.
@@ -79,7 +83,6 @@ private:
     void find_strains(const Substep& substep, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
-    void keep_momentum(const Substep& substep, std::span<const Vec3> by_flow, std::span<Vec3> moves) const;
     // Distance of layers: as if a body of no thickness lay between them.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 

@@ -5,38 +5,45 @@
 
 namespace embody::physics::deformable {
 
-void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
-                  std::span<Vec3> moves) {
+void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings) {
     constexpr double line_inertia = 1e-9;  // of the whole inertia: rounding leaves 1e-15 of it about a straight line
+    // Calls `use` with mass (kg), place (m), momentum with what is given (N s) and move of each node.
+    const auto for_each_node = [&](auto&& use) {
+        for (const FreePart& part : parts) {
+            const Nodes& nodes = *part.nodes;
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+                use(nodes.mass[i], nodes.position[i], nodes.mass[i] * nodes.mean_velocity[i] + part.given[i],
+                    part.moves[i]);
+        }
+    };
     double mass = 0;
     Vec3 momentum, moved, center;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        mass += nodes.mass[i];
-        center += nodes.mass[i] * nodes.position[i];
-        momentum += nodes.mass[i] * nodes.mean_velocity[i] + given[i];
-        moved += nodes.mass[i] / h * moves[i];
-    }
+    for_each_node([&](double m, Vec3 position, Vec3 of_node, Vec3 move) {
+        mass += m;
+        center += m * position;
+        momentum += of_node;
+        moved += m / h * move;
+    });
     center = center / mass;
     Vec3 angular;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        angular += cross(nodes.position[i] - center, nodes.mass[i] * nodes.mean_velocity[i] + given[i]);
+    for_each_node([&](double, Vec3 position, Vec3 of_node, Vec3) { angular += cross(position - center, of_node); });
     const Vec3 mean = momentum / mass, shift = (h / mass) * (momentum - moved), new_center = center + h * mean;
-    for (Vec3& move : moves) move += shift;
+    for_each_node([&](double, Vec3, Vec3, Vec3& move) { move += shift; });
     // The turn changes the arms, too, so it takes some iterations.
     for (int iteration = 0; iteration < settings.momentum_iterations; ++iteration) {
         Mat3 inertia = Mat3::zero();
         Vec3 missing = angular;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const Vec3 arm = nodes.position[i] + moves[i] - new_center;
-            missing -= nodes.mass[i] * cross(arm, moves[i] / h - mean);
-            inertia += nodes.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
-        }
+        for_each_node([&](double m, Vec3 position, Vec3, Vec3 move) {
+            const Vec3 arm = position + move - new_center;
+            missing -= m * cross(arm, move / h - mean);
+            inertia += m * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
+        });
         // A straight line has no inertia about itself.
         inertia += line_inertia * trace(inertia) * Mat3::identity();
         const Vec3 spin = solve(inertia, missing);
         if (!is_finite(spin) || length(spin) * h > settings.max_momentum_turn) return;
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            moves[i] += h * cross(spin, nodes.position[i] + moves[i] - new_center);
+        for_each_node(
+            [&](double, Vec3 position, Vec3, Vec3& move) { move += h * cross(spin, position + move - new_center); });
     }
 }
 

@@ -11,11 +11,16 @@
 
 namespace embody::physics::deformable {
 
-/// For a deformable that nothing holds: changes `moves` (m, of a substep of h seconds) by a small move and turn of the
-/// whole, so that momentum and angular momentum are those before plus what is `given` from outside (N s, by node).
-/// Elastic forces change neither; a solve that ended early does, and backward Euler slows turning.
-void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
-                  std::span<Vec3> moves);
+/// A deformable in a substep: what is given to its nodes from outside (N s, by node), and their moves (m).
+struct FreePart {
+    const Nodes* nodes = nullptr;
+    std::vector<Vec3> given;
+    std::span<Vec3> moves;
+};
+/// For deformables that nothing but each other holds: changes their moves (of a substep of h seconds) by a small move
+/// and turn of the whole, so that momentum and angular momentum are those before plus what is given. Forces within and
+/// between them change neither; a solve that ended early does, and backward Euler slows turning.
+void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings);
 
 /// Impulses of the flow around the nodes in a substep in which they move by `moves` (m), N s; none without a flow. Held
 /// nodes have none.

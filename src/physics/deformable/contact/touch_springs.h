@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -160,6 +161,7 @@ public:
                 std::span<TouchedBody> bodies, std::span<const double> fractions = {});
 
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
+    [[nodiscard]] bool any_acts() const { return std::ranges::any_of(springs_, &TouchSpring::acts); }
 
     double radius = 1e-3;                                       ///< m
     Material material;                                          ///< of the deformable's surface

@@ -364,28 +364,35 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     std::vector<double> fractions;
     if (!clamps_.holds_any())
         fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
-    finish(substep, moves_, body_moves_, true, bodies, fractions);
+    if (is_free()) {
+        const FreePart part{&nodes_, impulses(substep, moves_), moves_};
+        keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
+    }
+    finish(substep, moves_, body_moves_, bodies, fractions);
     move_nodes(moves_, substep.h);
 }
 
+bool RopeLine::is_free() const {
+    return std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() && !springs_.any_acts() &&
+           std::ranges::none_of(segments_, &RopeSegment::is_broken);
+}
+
+std::vector<Vec3> RopeLine::impulses(const Substep& substep, std::span<const Vec3> moves) const {
+    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
+    std::vector<Vec3> all(nodes_.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
+    for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
+    return all;
+}
+
 void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
-                      bool is_alone, std::span<TouchedBody> bodies, std::span<const double> fractions) {
+                      std::span<TouchedBody> bodies, std::span<const double> fractions) {
     new_breaks_.clear();
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
-    const auto acts = [](const TouchSpring& spring) { return spring.acts; };
-    const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
-    const bool is_free = is_alone && std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
-                         std::ranges::none_of(springs_.springs(), acts);
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
-    if (is_whole && is_free) {
-        std::vector<Vec3> all(count);
-        for (std::size_t i = 0; i < count; ++i)
-            all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
-        for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
-        keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves);
-    }
     held_.clear();
     springs_.finish(moves, body_moves, substep, bodies, fractions);
     if (!clamps_.holds_any()) return;

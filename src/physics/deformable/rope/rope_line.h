@@ -37,9 +37,12 @@ public:
     /// linearize().
     void predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
     /// Ends the substep with these moves (m), which touch() was solved with, and changes them where the solve could not
-    /// know. `is_alone`: as of ClothSheet::finish(). Pushes the bodies; `fractions` as of TouchSprings::finish().
-    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves, bool is_alone,
+    /// know. Pushes the bodies; `fractions` as of TouchSprings::finish().
+    void finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
                 std::span<TouchedBody> bodies, std::span<const double> fractions);
+    /// As of ClothSheet; a broken rope is not free.
+    [[nodiscard]] bool is_free() const;
+    [[nodiscard]] std::vector<Vec3> impulses(const Substep& substep, std::span<const Vec3> moves) const;
     /// Moves the nodes by these moves (m) in h seconds; a segment may break.
     void move_nodes(std::span<const Vec3> moves, double h);
     [[nodiscard]] TouchSprings& touch() { return springs_; }

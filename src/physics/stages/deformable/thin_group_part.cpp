@@ -9,6 +9,7 @@
 #include "foundation/task_pool.h"
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
+#include "physics/deformable/contact/free_motion.h"
 #include "physics/stages/access.h"
 #include "physics/state/deformable_state.h"
 #include "physics/state/event_state.h"
@@ -365,19 +366,44 @@ std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) 
     return held;
 }
 
-// Whether no spring between it and another member acts. The forces of a solve that has not converged are no measure of
-// the momentum that it gets: ropes that met at 20 m/s got 1e6 times their energy by it.
-bool ThinGroupPart::is_alone(const Member& member) const {
+// Momenta of what nothing else holds: of all together, as the forces of a solve that has not converged are no measure
+// of what one gets from another (ropes that met at 20 m/s got 1e6 times their energy by it); one that no other pulls or
+// pushes by itself.
+void ThinGroupPart::keep_momenta() {
+    std::vector<std::uint8_t> is_joined(members_.size(), 0);
+    std::vector<std::uint32_t> member_of(moves_.size());
+    for (std::uint32_t m = 0; m < members_.size(); ++m)
+        std::fill_n(member_of.begin() + static_cast<std::ptrdiff_t>(members_[m].first), members_[m].count, m);
     for (const std::span<const TouchSpring> springs : {pairs_.springs(), ties_.springs()}) {
         for (const TouchSpring& spring : springs) {
-            const auto is_own = [&](std::uint32_t node) {
-                return node >= member.first && node < member.first + member.count;
-            };
-            const auto own = std::count_if(spring.node.begin(), spring.node.begin() + spring.count, is_own);
-            if (spring.acts && own > 0 && own < spring.count) return false;
+            for (int k = 1; spring.acts && k < spring.count; ++k) {
+                const std::uint32_t a = member_of[spring.node[0]],
+                                    b = member_of[spring.node[static_cast<std::size_t>(k)]];
+                if (a != b) is_joined[a] = is_joined[b] = 1;
+            }
         }
     }
-    return true;
+    std::vector<FreePart> joined;
+    bool are_joined_free = true;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        const Member& member = members_[m];
+        DeformableRecord& record = member.record();
+        const bool is_free =
+            record.cloth() ? record.cloth()->is_free() : record.rope()->is_free() && !record.rope()->has_clamps();
+        if (is_joined[m] != 0) are_joined_free &= is_free;
+        if (!is_free) continue;
+        const std::span<Vec3> moves = part(moves_, member);
+        FreePart own{&record.nodes(),
+                     record.cloth() ? record.cloth()->impulses(member.substep, moves)
+                                    : record.rope()->impulses(member.substep, moves),
+                     moves};
+        if (is_joined[m] != 0)
+            joined.push_back(std::move(own));
+        else
+            deformable::keep_momenta(std::span(&own, 1), h_, member.substep.settings.thin_contact);
+    }
+    if (are_joined_free && !joined.empty())
+        deformable::keep_momenta(joined, h_, members_[0].substep.settings.thin_contact);
 }
 
 // A clamped rope is solved once more alone: the common solve does not include its twist.
@@ -388,14 +414,18 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     pairs_.finish(moves_, world_.deformables.thin_contacts);
     ties_.finish(moves_);
     for (Member& member : members_) {
-        const std::span<Vec3> moves = part(moves_, member);
-        if (ClothSheet* sheet = member.record().cloth()) {
+        if (ClothSheet* sheet = member.record().cloth())
             sheet->touch() = std::move(member.touch);
-            sheet->finish(member.substep, moves, body_moves_, is_alone(member), bodies);
-        } else if (RopeLine* rope = member.record().rope(); !rope->has_clamps()) {
+        else if (RopeLine* rope = member.record().rope(); !rope->has_clamps())
             rope->touch() = std::move(member.touch);
-            rope->finish(member.substep, moves, body_moves_, is_alone(member), bodies, fractions);
-        }
+    }
+    keep_momenta();
+    for (Member& member : members_) {
+        const std::span<Vec3> moves = part(moves_, member);
+        if (ClothSheet* sheet = member.record().cloth())
+            sheet->finish(member.substep, moves, body_moves_, bodies);
+        else if (RopeLine* rope = member.record().rope(); !rope->has_clamps())
+            rope->finish(member.substep, moves, body_moves_, bodies, fractions);
     }
     CrossingGuard(seen_, guarded_, world_.workers).hold(compliance, moves_);
     for (Member& member : members_) {

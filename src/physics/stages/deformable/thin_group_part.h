@@ -50,7 +50,7 @@ private:
     bool choose_again(bool is_last);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
-    [[nodiscard]] bool is_alone(const Member& member) const;
+    void keep_momenta();
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
 
