@@ -86,10 +86,8 @@ struct DeformableScene {
             if (solves == substep.settings.cloth.max_solves || !next.choose(moves, body_moves, false)) break;
             touch = std::move(next);
         }
-        if (deformable.is_free()) {
-            const FreePart part{&deformable.nodes(), deformable.impulses(substep, moves), moves};
-            keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
-        }
+        const FreePart part{&deformable.nodes(), deformable.take_impulses(substep, moves), moves};
+        if (deformable.is_free()) keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
         deformable.finish(substep, moves, body_moves, bodies);
         deformable.move_nodes(moves, substep.h);
     }

@@ -244,12 +244,15 @@ bool ClothSheet::is_free() const {
     return std::ranges::none_of(fixed_, [](std::uint8_t fixed) { return fixed != 0; }) && !springs_.any_acts();
 }
 
-std::vector<Vec3> ClothSheet::impulses(const Substep& substep, std::span<const Vec3> moves) const {
+std::vector<Vec3> ClothSheet::take_impulses(const Substep& substep, std::span<const Vec3> moves) {
     const double h = substep.h;
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
-    for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
+    for (std::size_t i = 0; i < by_flow.size(); ++i) {
+        nodes_.flow_impulse[i] += by_flow[i];
+        all[i] += by_flow[i];
+    }
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
             all[node] += dot(air_[t], h * winds_[t] - moves[node]) * air_[t];
@@ -282,8 +285,6 @@ void ClothSheet::freeze() {
 
 void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span<const BodyMove> body_moves,
                         std::span<TouchedBody> bodies) {
-    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
-    for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     springs_.finish(moves, body_moves, substep, bodies);
 }
 

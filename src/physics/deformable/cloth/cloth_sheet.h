@@ -40,8 +40,9 @@ public:
                 std::span<TouchedBody> bodies);
     /// Whether nothing but weight, air, liquids and other sheets and ropes acts on it.
     [[nodiscard]] bool is_free() const;
-    /// What weight, air and liquids give each node in a substep with these moves, N s.
-    [[nodiscard]] std::vector<Vec3> impulses(const Substep& substep, std::span<const Vec3> moves) const;
+    /// What weight, air and liquids give each node in a substep with these moves, N s; notes what the liquids give.
+    /// Before finish(), once.
+    std::vector<Vec3> take_impulses(const Substep& substep, std::span<const Vec3> moves);
     /// Moves the nodes by these moves (m) in h seconds.
     void move_nodes(std::span<const Vec3> moves, double h);
     /// Stops it for good where it is.

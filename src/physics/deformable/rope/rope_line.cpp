@@ -364,25 +364,26 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     std::vector<double> fractions;
     if (!clamps_.holds_any())
         fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
-    if (is_free()) {
-        const FreePart part{&nodes_, impulses(substep, moves_), moves_};
-        keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
-    }
+    const FreePart part{&nodes_, take_impulses(substep, moves_), moves_};
+    if (is_free()) keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
     finish(substep, moves_, body_moves_, bodies, fractions);
     move_nodes(moves_, substep.h);
 }
 
 bool RopeLine::is_free() const {
-    return std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() && !springs_.any_acts() &&
+    return !is_frozen_ && std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() && !springs_.any_acts() &&
            std::ranges::none_of(segments_, &RopeSegment::is_broken);
 }
 
-std::vector<Vec3> RopeLine::impulses(const Substep& substep, std::span<const Vec3> moves) const {
+std::vector<Vec3> RopeLine::take_impulses(const Substep& substep, std::span<const Vec3> moves) {
     const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
     std::vector<Vec3> all(nodes_.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         all[i] = substep.h * (nodes_.mass[i] * substep.gravity + nodes_.force_on(i));
-    for (std::size_t i = 0; i < by_flow.size(); ++i) all[i] += by_flow[i];
+    for (std::size_t i = 0; i < by_flow.size(); ++i) {
+        nodes_.flow_impulse[i] += by_flow[i];
+        all[i] += by_flow[i];
+    }
     return all;
 }
 
@@ -390,13 +391,10 @@ void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<c
                       std::span<TouchedBody> bodies, std::span<const double> fractions) {
     new_breaks_.clear();
     if (is_frozen_) return;
-    const std::size_t count = nodes_.size();
-    const std::vector<Vec3> by_flow = impulses_of_flow(nodes_, moves, substep);
-    for (std::size_t i = 0; i < by_flow.size(); ++i) nodes_.flow_impulse[i] += by_flow[i];
     held_.clear();
     springs_.finish(moves, body_moves, substep, bodies, fractions);
     if (!clamps_.holds_any()) return;
-    for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves[i];
+    for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = nodes_.position[i] + moves[i];
     clamps_.finish(places_, body_moves, substep.h, bodies);
 }
 

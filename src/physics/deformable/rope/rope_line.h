@@ -42,7 +42,7 @@ public:
                 std::span<TouchedBody> bodies, std::span<const double> fractions);
     /// As of ClothSheet; a broken rope is not free.
     [[nodiscard]] bool is_free() const;
-    [[nodiscard]] std::vector<Vec3> impulses(const Substep& substep, std::span<const Vec3> moves) const;
+    std::vector<Vec3> take_impulses(const Substep& substep, std::span<const Vec3> moves);
     /// Moves the nodes by these moves (m) in h seconds; a segment may break.
     void move_nodes(std::span<const Vec3> moves, double h);
     [[nodiscard]] TouchSprings& touch() { return springs_; }

@@ -388,15 +388,16 @@ void ThinGroupPart::keep_momenta() {
     for (std::size_t m = 0; m < members_.size(); ++m) {
         const Member& member = members_[m];
         DeformableRecord& record = member.record();
-        const bool is_free =
-            record.cloth() ? record.cloth()->is_free() : record.rope()->is_free() && !record.rope()->has_clamps();
+        const bool is_clamped = record.rope() && record.rope()->has_clamps();  // it is solved once more
+        const bool is_free = !is_clamped && (record.cloth() ? record.cloth()->is_free() : record.rope()->is_free());
         if (is_joined[m] != 0) are_joined_free &= is_free;
-        if (!is_free) continue;
+        if (is_clamped) continue;
         const std::span<Vec3> moves = part(moves_, member);
         FreePart own{&record.nodes(),
-                     record.cloth() ? record.cloth()->impulses(member.substep, moves)
-                                    : record.rope()->impulses(member.substep, moves),
+                     record.cloth() ? record.cloth()->take_impulses(member.substep, moves)
+                                    : record.rope()->take_impulses(member.substep, moves),
                      moves};
+        if (!is_free) continue;
         if (is_joined[m] != 0)
             joined.push_back(std::move(own));
         else
