@@ -214,7 +214,7 @@ SCENES = {
     "pool_table": (8, False, pool_table),
     "rope_bridge": (4, False, bridge),
     "stack_of_boxes": (12, True, stack),
-    "tablecloth": (12, True, tablecloth),
+    "tablecloth": (14, True, tablecloth),
     "trampoline": (4, False, trampoline),
     "wrecking_ball": (5, False, wrecking_ball),
 }
