@@ -27,7 +27,7 @@ std::array<double, 4> weights_of(ThinFeature kind, const std::array<Vec3, 4>& x)
 std::optional<Impact> first_impact(const MovingFeatures& features, double distance) {
     constexpr double same_place = 0.01;  // of the distance: nearer ones began in one place and have no side
     constexpr double kept = 0.1;         // of the distance, as in the paper's section 6
-    constexpr int max_tries = 100;       // each goes nine tenths of the way that is safe
+    constexpr int max_tries = 100;       // each goes nine tenths of the travel that is safe
     const std::size_t first = features.kind == ThinFeature::edge_on_edge ? 2 : 1;
     const std::size_t count = features.kind == ThinFeature::node_on_edge ? 3 : 4;
     // The motion of the whole brings nothing nearer.

@@ -20,16 +20,10 @@ namespace embody::physics::stages {
 
 namespace {
 
-// Half the distance at which the middles of two members touch, m.
-double radius_of(const DeformableRecord& record) {
-    const Cloth* cloth = std::get_if<Cloth>(&record.definition.matter);
-    return std::max(record.definition.contact_radius, cloth != nullptr ? cloth->thickness / 2 : 0);
-}
-
 // The nodes of `own` that are held at the other: by a tie, or by anchors on one body that are nearer to each other than
-// the two may come. None: empty.
-std::vector<bool> held_nodes(const DeformableAccess& world, const DeformableRecord& own,
-                             const DeformableRecord& other) {
+// the distance that the two keep, m. None: empty.
+std::vector<bool> held_nodes(const DeformableAccess& world, const DeformableRecord& own, const DeformableRecord& other,
+                             double distance) {
     std::vector<bool> is_held;
     const auto hold = [&](std::uint32_t node) {
         is_held.resize(own.nodes().size(), false);
@@ -44,10 +38,9 @@ std::vector<bool> held_nodes(const DeformableAccess& world, const DeformableReco
             if (tie.weight[k] > 0) hold(tie.other_nodes[k]);
         }
     }
-    const double radius = radius_of(own) + radius_of(other);
     for (const Attachment& attachment : own.definition.attachments) {
         const auto is_near = [&](const Attachment& of_other) {
-            return of_other.body == attachment.body && length(of_other.anchor - attachment.anchor) < radius;
+            return of_other.body == attachment.body && length(of_other.anchor - attachment.anchor) < distance;
         };
         if (std::ranges::any_of(other.definition.attachments, is_near)) hold(attachment.node);
     }
@@ -83,8 +76,9 @@ void find_candidates(const DeformableAccess& world, const DeformableRecord& a, c
     const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
     find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
                          world.workers, pair.candidates);
-    pair.held_a = held_nodes(world, a, b);
-    pair.held_b = held_nodes(world, b, a);
+    const double distance = on_a.radius + on_b.radius;
+    pair.held_a = held_nodes(world, a, b, distance);
+    pair.held_b = held_nodes(world, b, a, distance);
     leave_out_held(on_a, pair.held_a, on_b, pair.held_b, pair.candidates);
 }
 
