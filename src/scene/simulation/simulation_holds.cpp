@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Connections between entities: joints, and the pins of deformable things.
 #include <algorithm>
+#include <limits>
 
 #include "attributes/physical_kind.h"
 #include "scene/document/document_field.h"
@@ -43,6 +44,25 @@ void add_targets(const std::vector<Pin>& pins, std::set<EntityIndex>& targets) {
 // Whether a pin between things of these kinds is a tie, which does not make them rigid.
 bool may_tie(PhysicalKind one, PhysicalKind other) {
     return is_deformable(one) && is_deformable(other) && (is_thin(one) || is_thin(other));
+}
+
+// Mean length of the edges of a sheet, the segments of a rope, m; 0 for a solid.
+double spacing_of(const physics::DeformableDefinition& thin) {
+    double sum = 0, count = 0;
+    const auto add = [&](std::uint32_t a, std::uint32_t b) {
+        sum += length(thin.nodes[b] - thin.nodes[a]);
+        ++count;
+    };
+    if (const auto* cloth = std::get_if<physics::Cloth>(&thin.matter)) {
+        for (const auto& [a, b, c] : cloth->triangles) {
+            add(a, b);
+            add(b, c);
+            add(c, a);
+        }
+    } else if (std::holds_alternative<physics::Rope>(thin.matter)) {
+        for (std::uint32_t i = 0; i + 1 < thin.nodes.size(); ++i) add(i, i + 1);
+    }
+    return count > 0 ? sum / count : 0;
 }
 
 bool is_thin(const LiveEntity& entity) {
@@ -126,11 +146,24 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
         if (!other) return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
         const SoftNodes* holder = as_soft(other->points.get());
         if (holder && is_thin(entity)) {
+            // Those that lie nearest to it: a part of a sheet that hung on a line with all its rows would be drawn onto
+            // it through itself.
+            std::vector<std::pair<double, physics::Tie>> near;
+            double least = std::numeric_limits<double>::infinity();
+            const std::span<const Vec3> places = world->node_positions(holder->handle());
             for (const std::uint32_t node : nodes) {
                 const auto tie = world->nearest_tie(node, holder->handle(), positions[node]);
                 if (is_held[node] || !tie) continue;
-                is_held[node] = true;
-                held_now.ties.push_back(*tie);
+                Vec3 away = positions[node];
+                for (std::size_t k = 0; k < 3; ++k) away -= tie->weight[k] * places[tie->other_nodes[k]];
+                near.emplace_back(length(away), *tie);
+                least = std::min(least, length(away));
+            }
+            const double farthest = least + spacing_of(*deformable) / 2;
+            for (const auto& [distance, tie] : near) {
+                if (distance > farthest) continue;
+                is_held[tie.node] = true;
+                held_now.ties.push_back(tie);
             }
             continue;
         }
