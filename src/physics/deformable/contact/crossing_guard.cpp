@@ -21,10 +21,6 @@ bool has_common(std::span<const std::uint32_t> a, std::span<const std::uint32_t>
     return std::ranges::any_of(a, [&](std::uint32_t node) { return std::ranges::find(b, node) != b.end(); });
 }
 
-bool has_any(const std::vector<bool>& marked, std::span<const std::uint32_t> nodes) {
-    return !marked.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return marked[node]; });
-}
-
 }  // namespace
 
 const CrossingGuard::Stars& CrossingGuard::stars_of(std::uint32_t member) {
@@ -113,8 +109,7 @@ std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) {
             const std::span<const std::uint32_t> nodes(points.node.data(), static_cast<std::size_t>(points.count));
             const auto of_first = nodes.first(static_cast<std::size_t>(points.count_first));
             const auto of_second = nodes.subspan(of_first.size());
-            if (has_any(candidate.is_swapped ? pair.held_b : pair.held_a, of_first) ||
-                has_any(candidate.is_swapped ? pair.held_a : pair.held_b, of_second) ||
+            if (pair.held.hold(candidate.is_swapped, of_first, of_second) ||
                 is_tangled(first, of_first, second, of_second))
                 continue;
             points.weight = impact->weight;

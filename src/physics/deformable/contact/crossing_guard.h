@@ -18,7 +18,7 @@ public:
     struct Pair {
         std::uint32_t a = 0, b = 0;
         ClothLayers* layers = nullptr;
-        std::vector<bool> held_a, held_b;  ///< nodes that are held at the other, which may meet; none: empty
+        HeldNodes held;  ///< features with these may meet
     };
     /// As its substep begins; these outlive it.
     CrossingGuard(std::span<const ThinMember> members, std::span<const Pair> pairs, TaskPool& workers)

@@ -8,6 +8,29 @@
 
 namespace embody::physics::deformable {
 
+bool HeldNodes::hold(bool is_swapped, std::span<const std::uint32_t> first,
+                     std::span<const std::uint32_t> second) const {
+    const auto has_any = [](const std::vector<bool>& marked, std::span<const std::uint32_t> nodes) {
+        return !marked.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return marked[node]; });
+    };
+    if (are_of_one) return has_any(of_a, first) && has_any(of_a, second);
+    return has_any(is_swapped ? of_b : of_a, first) || has_any(is_swapped ? of_a : of_b, second);
+}
+
+void leave_out_held(const ThinSurface& a, const ThinSurface& b, const HeldNodes& held,
+                    std::vector<ThinCandidate>& candidates) {
+    if (held.of_a.empty() && held.of_b.empty()) return;
+    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
+        const ThinSurface &one = candidate.is_swapped ? b : a, &two = candidate.is_swapped ? a : b;
+        using Nodes = std::span<const std::uint32_t>;
+        const Nodes first = candidate.kind == ThinFeature::edge_on_edge ? Nodes(one.edges[candidate.first])
+                                                                        : Nodes(&candidate.first, 1);
+        const Nodes second = candidate.kind == ThinFeature::node_on_triangle ? Nodes(two.triangles[candidate.second])
+                                                                             : Nodes(two.edges[candidate.second]);
+        return held.hold(candidate.is_swapped, first, second);
+    });
+}
+
 struct PairSprings::Found {
     ThinCandidate candidate;
     ThinPoints points;
