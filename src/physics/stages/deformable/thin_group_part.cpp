@@ -26,6 +26,7 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
         surface.triangles = cloth.triangles;
         surface.edges = record.cloth()->edges();
         surface.edge_length = record.cloth()->edge_length();
+        surface.stars = &record.cloth()->layers().stars();
         surface.radius = std::max(surface.radius, cloth.thickness / 2);
         return surface;
     }
