@@ -87,6 +87,7 @@ ContinuousAccess::ContinuousAccess(WorldState& world)
 DeformableAccess::DeformableAccess(WorldState& world)
     : settings(world.settings),
       contacts(world.contacts),
+      joints(world.joints),
       workers(*world.workers),
       report(world.report),
       rigid(world.rigid),

@@ -160,6 +160,7 @@ struct DeformableAccess {
     explicit DeformableAccess(WorldState& world);
     const WorldSettings& settings;
     const ContactState& contacts;
+    const JointState& joints;
     TaskPool& workers;
     StepReport& report;
     RigidState& rigid;

@@ -15,6 +15,9 @@ struct ThinContactSettings {
     double load_stiffness_factor = 4;
     /// The same over the inertia of a body in which a node begins, at that place. Test: Settings.AreNoticed.
     double recovery_stiffness_factor = 2;
+    /// Stiffness of what bears a body that deformables push, over the inertia of all that they are solved with. Test:
+    /// Settings.AreNoticed.
+    double support_stiffness_factor = 10;
     /// Speed at which a node that begins inside something is pushed out, m/s. Test:
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
     double recovery_speed = 0.2;
@@ -56,6 +59,9 @@ struct ThinContactSettings {
     double max_energy_ratio = 4;
     /// Speed up to which springs may push a body without that limit, m/s. Test: BeginsInside.ARopeShootsNoBoxAway.
     double free_push_speed = 0.5;
+    /// Push on a body that is borne, over its weight, up to which the next rigid step takes it as a constant force.
+    /// Test: LightBodies.UnderHeavySheetsGainNoEnergy.
+    double max_push_in_weights = 10;
     /// Minimum of the acceleration that stands for gravity, m/s²: forces are turned into loads by it, and accuracy is
     /// measured by it. Test: Settings.AreNoticed.
     double min_gravity = 1;
@@ -71,6 +77,7 @@ inline constexpr auto settings_of<ThinContactSettings> = std::tuple{
     Setting{"stiffness_factor", &ThinContactSettings::stiffness_factor, 1, 1e4},
     Setting{"load_stiffness_factor", &ThinContactSettings::load_stiffness_factor, 0, 1e4},
     Setting{"recovery_stiffness_factor", &ThinContactSettings::recovery_stiffness_factor, 1e-3, 1e4},
+    Setting{"support_stiffness_factor", &ThinContactSettings::support_stiffness_factor, 1e-3, 1e4},
     Setting{"recovery_speed", &ThinContactSettings::recovery_speed, 0, 1e3, "m/s"},
     Setting{"recovery_fraction", &ThinContactSettings::recovery_fraction, 0, 1},
     Setting{"depth_stiffness_factor", &ThinContactSettings::depth_stiffness_factor, 0, 1e3},
@@ -86,6 +93,7 @@ inline constexpr auto settings_of<ThinContactSettings> = std::tuple{
     Setting{"held_edge_cosine", &ThinContactSettings::held_edge_cosine, -1, 1},
     Setting{"max_energy_ratio", &ThinContactSettings::max_energy_ratio, 1, 1e6},
     Setting{"free_push_speed", &ThinContactSettings::free_push_speed, 0, 1e3, "m/s"},
+    Setting{"max_push_in_weights", &ThinContactSettings::max_push_in_weights, 0, 1e6},
     Setting{"min_gravity", &ThinContactSettings::min_gravity, 1e-3, 1e3, "m/s²"},
     Setting{"momentum_iterations", &ThinContactSettings::momentum_iterations, 0, 1000},
     Setting{"max_momentum_turn", &ThinContactSettings::max_momentum_turn, 0, 1, "rad"},

@@ -27,19 +27,6 @@ double sum_of(const std::vector<double>& values) { return std::accumulate(values
 
 Vec3 at_arm(const BodyMove& move, Vec3 arm) { return move.shift + cross(move.turn, arm); }
 
-BodyMove solve(const std::array<double, 36>& factor, const BodyMove& rhs) {
-    std::array<double, 6> v{rhs.shift.x, rhs.shift.y, rhs.shift.z, rhs.turn.x, rhs.turn.y, rhs.turn.z};
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t k = 0; k < i; ++k) v[i] -= factor[6 * i + k] * v[k];
-        v[i] /= factor[7 * i];
-    }
-    for (std::size_t i = 6; i-- > 0;) {
-        for (std::size_t k = i + 1; k < 6; ++k) v[i] -= factor[6 * k + i] * v[k];
-        v[i] /= factor[7 * i];
-    }
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-}
-
 }  // namespace
 
 double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
@@ -168,8 +155,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
     }
     add_line_pulls();
     for (std::size_t b = 0; b < bodies.size(); ++b)
-        body_z_[b] =
-            bodies[b].moves ? embody::physics::deformable::solve(body_factors_[b].factor, body_z_[b]) : BodyMove{};
+        body_z_[b] = bodies[b].moves ? body_blocks_[b].solve(body_z_[b]) : BodyMove{};
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
@@ -370,6 +356,7 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(x_.at(place_[i]));
     std::ranges::copy(line_x_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
     for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_x_[b];
+    balance_bodies(springs, bodies, moves, body_moves);
     return result.end == GradientEnd::not_finite ? not_finite : result.iterations;
 }
 

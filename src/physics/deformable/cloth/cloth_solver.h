@@ -9,6 +9,7 @@
 #include "math/kernel_width.h"
 #include "physics/definitions/settings/thin_settings.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
+#include "physics/deformable/contact/body_block.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/linear/band_cholesky.h"
@@ -56,9 +57,6 @@ public:
 private:
     static constexpr std::size_t min_parallel_count = 1000;  // nodes
 
-    struct BodyFactor {
-        std::array<double, 36> factor{};  // mass and springs, less the compliance of nodes
-    };
     // Coupling of a line and a body: a column for each unknown of the body, and the line's solution for it.
     struct LineHold {
         std::uint32_t body = 0;
@@ -118,7 +116,7 @@ private:
     std::vector<BodyMove> body_p_, body_q_, body_r_, body_z_, body_x_;
     std::vector<Vec3> line_p_, line_q_, line_r_, line_z_, line_x_;
     std::vector<Vec3> line_ap_, line_az_;  // A p and A z with a line's own matrix A; q has its other couplings
-    std::vector<BodyFactor> body_factors_;
+    std::vector<BodyBlock> body_blocks_;   // with springs, less the compliance of nodes
     std::vector<LineHold> line_holds_;
     std::vector<std::uint32_t> line_of_;
     std::vector<std::size_t> line_first_;  // of line_of_, one more than lines

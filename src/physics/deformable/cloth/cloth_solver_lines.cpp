@@ -69,7 +69,7 @@ void ClothSolver::apply_line_hold(const LineHold& hold) {
         for (std::size_t c = 0; c < 6; ++c) {
             double sum = 0;
             for (std::size_t i = 0; i < hold.column[r].size(); ++i) sum += dot(hold.column[r][i], hold.given[c][i]);
-            body_factors_[hold.body].factor[6 * r + c] -= sum;
+            body_blocks_[hold.body].at(r, c) -= sum;
         }
     }
 }

@@ -11,33 +11,6 @@ namespace {
 
 constexpr std::size_t chunk_slices = 8;  // whose products are summed before the others'
 
-// Lower factor L Lᵀ in place, row by row.
-void factorize(std::array<double, 36>& m) {
-    constexpr double min_pivot = 1e-300;  // keeps the root real and its inverse finite
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t k = 0; k <= i; ++k) {
-            double sum = m[6 * i + k];
-            for (std::size_t j = 0; j < k; ++j) sum -= m[6 * i + j] * m[6 * k + j];
-            m[6 * i + k] = i == k ? std::sqrt(std::max(sum, min_pivot)) : sum / m[6 * k + k];
-        }
-    }
-}
-
-// Jᵀ m J of a point at `arm`: J (shift, turn) = shift + turn × arm.
-void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
-    const Mat3 s = transpose(skew(arm));  // turn × arm = s turn
-    const Mat3 mixed = m * s, turned = transpose(s) * mixed;
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            const auto row = static_cast<std::size_t>(r), column = static_cast<std::size_t>(c);
-            to[6 * row + column] += m(r, c);
-            to[6 * row + column + 3] += mixed(r, c);
-            to[6 * (column + 3) + row] += mixed(r, c);
-            to[6 * (row + 3) + column + 3] += turned(r, c);
-        }
-    }
-}
-
 }  // namespace
 
 // Whether the preconditioner includes all of a spring: one node, or nodes of one line, and no body that moves.
@@ -153,29 +126,19 @@ void ClothSolver::sort_links(std::vector<Link>& links) {
 }
 
 void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
-    body_factors_.assign(bodies.size(), {});
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        auto& factor = body_factors_[b].factor;
-        for (int r = 0; r < 3; ++r) {
-            const auto row = static_cast<std::size_t>(r);
-            factor[7 * row] = bodies[b].moves ? bodies[b].mass : 1;
-            for (int c = 0; c < 3; ++c)
-                factor[6 * (row + 3) + static_cast<std::size_t>(c) + 3] =
-                    bodies[b].moves ? bodies[b].inertia(r, c) : (r == c ? 1.0 : 0.0);
-        }
-    }
+    body_blocks_.clear();
+    for (const BodyInertia& body : bodies) body_blocks_.emplace_back(body);
     for (const std::uint32_t s : coupled_) {
         const TouchSpring& spring = springs[s];
         if (!moves_body(spring, bodies)) continue;
         const Mat3& k = spring.matrix;
-        auto& factor = body_factors_[spring.body].factor;
         // A single node is compliant: the body's stiffness by it is K - K D⁻¹ K.
         const bool is_single = spring.count == 1 && spring.node[0] < nodes_;
         const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
-        add_at_arm(factor, felt, spring.arm);
+        body_blocks_[spring.body].add(felt, spring.arm);
     }
     for (const LineHold& hold : line_holds_) apply_line_hold(hold);
-    for (BodyFactor& body : body_factors_) factorize(body.factor);
+    for (BodyBlock& block : body_blocks_) block.factorize();
 }
 
 }  // namespace embody::physics::deformable

@@ -32,6 +32,7 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h, cons
 double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predicted) {
     constexpr double stuck_fraction = 0.99;  // of k times the stretch: below it the force was that of a secant
     double limit = spring.friction.coefficient(spring.sticks) * load;
+    const double inertia = spring.inertia / (1 + spring.inertia * spring.body_compliance);  // that slips
     const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
     const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
     const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
@@ -39,13 +40,13 @@ double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predict
     const double excess = length(force) - limit;
     const bool has_stuck = length(force) > stuck_fraction * spring.stiffness * size;
     const double expected =
-        !is_predicted && (has_stuck || spring.predicts_slip) && excess > 0 ? size + excess / spring.inertia : size;
+        !is_predicted && (has_stuck || spring.predicts_slip) && excess > 0 ? size + excess / inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
     if (!sticks) limit = spring.friction.sliding * load;
     const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
     spring.matrix = tangent * plane;
     spring.load = -tangent * loose;
-    if (!sticks && spring.inertia * expected > 2 * limit && size > 0) {
+    if (!sticks && inertia * expected > 2 * limit && size > 0) {
         const Vec3 displacement = stretch / size;
         spring.load -= (limit - tangent * dot(displacement, loose)) * displacement;
         spring.matrix = spring.matrix - tangent * outer(displacement, displacement);
@@ -218,6 +219,11 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.arm += across(offset, spring.normal);
     spring.friction = friction_between(material, body.material, *substep.surface_pairs);
     spring.carried = place.displacement_of(spring.arm) + substep.h * plane.velocity;
+    const Mat3 turning = skew(spring.arm);
+    const Mat3 by_turn = turning * body.inverse_inertia * transpose(turning);
+    if (predicts_slip)  // the many solves of ropes find it; so judged, a rope that pierces a box would throw it
+        spring.body_compliance =
+            substep.h * substep.h * (body.inverse_mass + trace(by_turn) - dot(spring.normal, by_turn * spring.normal));
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
     const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
     spring.overlap = std::max(0.0, -gap_at_start);
@@ -361,22 +367,35 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
     return sum.change > tolerance * sum.near;
 }
 
-// A point that has come in where no solve had a contact, since another solve was not made, is stopped alone.
-bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves) {
+// A point that has come in where no solve had a contact, since another solve was not made, is stopped alone: by an
+// impulse between it and the body, one point after the other, so that many heavy points do not throw a light body.
+bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<BodyMove> body_moves,
+                        std::span<const TouchedBody> bodies, double h) {
     if (spring.count != 1 || spring.is_attachment) return false;
     const Vec3 s = spring.lead(node_moves, body_moves), slip = across(s - spring.carried, spring.normal);
     const double depth = -(spring.gap + dot(spring.normal, s));
     if (depth <= 0) return false;
-    const double push = spring.inertia * depth, size = length(slip);
+    double compliance = 0;  // 1/kg
+    if (spring.body != no_body) {
+        const Vec3 turning = cross(spring.arm, spring.normal);
+        compliance = bodies[spring.body].inverse_mass + dot(turning, bodies[spring.body].inverse_inertia * turning);
+    }
+    const double inertia = spring.inertia / (1 + spring.inertia * compliance * h * h);
+    const double push = inertia * depth, size = length(slip);
     spring.felt = push * spring.normal;
-    if (size > 0) spring.felt -= (std::min(spring.friction.sliding * push, spring.inertia * size) / size) * slip;
+    if (size > 0) spring.felt -= (std::min(spring.friction.sliding * push, inertia * size) / size) * slip;
     node_moves[spring.node[0]] += spring.felt / spring.inertia;
+    if (spring.body != no_body) {
+        body_moves[spring.body].shift -= (bodies[spring.body].inverse_mass * h * h) * spring.felt;
+        body_moves[spring.body].turn -= bodies[spring.body].inverse_inertia * (h * h * cross(spring.arm, spring.felt));
+    }
     return spring.acts = true;
 }
 
 void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
                           std::span<TouchedBody> bodies, std::span<const double> fractions) {
     memory_.clear();
+    std::vector<BodyMove> moved(body_moves.begin(), body_moves.end());  // with those by nodes that are stopped
     // The forces are those of the solve: a node that is stopped below would stretch stiff springs that were in it.
     leads_.clear();
     for (TouchSpring& spring : springs_) {
@@ -386,8 +405,8 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
     for (std::size_t i = 0; i < springs_.size(); ++i) {
         TouchSpring& spring = springs_[i];
         if (!spring.acts) {
-            if (!stop(spring, node_moves, body_moves)) continue;
-            leads_[i] = spring.lead(node_moves, body_moves);
+            if (!stop(spring, node_moves, moved, bodies, substep.h)) continue;
+            leads_[i] = spring.lead(node_moves, moved);
         }
         if (spring.body == no_body) continue;
         if (!fractions.empty()) spring.felt *= fractions[spring.body];

@@ -79,6 +79,7 @@ struct TouchSpring {
     Vec3 carried;                  ///< displacement of the body's surface in the substep on its path, m
     double stiffness = 0;          ///< maximum of both directions, N/m
     double inertia = 0;            ///< mass of the point over the substep squared, N/m
+    double body_compliance = 0;    ///< of a body that moves, across the normal, at most, m/N
     Vec3 pull;                     ///< force that the spring had at the last substep's end, N: the push is along n
     Vec3 hold;                     ///< tangential stretch of the spring while it sticks, m
 
@@ -202,7 +203,8 @@ private:
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     // False where the contact is new.
     bool recall(const TouchedBody& body, const ThinContactSettings& settings, TouchSpring& spring) const;
-    static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
+    static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<BodyMove> body_moves,
+                     std::span<const TouchedBody> bodies, double h);
 
     std::vector<TouchSpring> springs_;
     std::vector<Memory> memory_;  // by feature

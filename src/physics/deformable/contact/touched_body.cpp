@@ -16,34 +16,79 @@ Vec3 TouchedBody::displacement(double h, double time, Vec3 arm) const {
     return h * (linear + cross(angular, arm));
 }
 
+void TouchedBody::set_borne_forces() {
+    for (const BodySupport& support : supports) {
+        borne_force -= support.path_force;
+        borne_torque -= cross(support.anchor, support.path_force);
+    }
+}
+
 void TouchedBody::enter_substep(double h) {
-    velocity -= (inverse_mass * h) * expected_force;
-    spin -= inverse_inertia * (h * expected_torque);
+    is_off_path = is_pushed_on_path();
+    is_settled = false;
+    for (BodySupport& support : supports) {
+        support.past_impulse += h * support.given;
+        support.given = is_off_path ? Vec3{} : support.path_force;
+    }
+    if (is_off_path) {
+        velocity -= (inverse_mass * h) * (expected_force + borne_force);
+        spin -= inverse_inertia * (h * (expected_torque + borne_torque));
+    }
     shift += h * velocity;
     turn += h * spin;
 }
 
 void TouchedBody::enter_whole_step(int substeps) {
     const double n = substeps, rest = (1 - (n + 1) / (2 * n)) * step_time * step_time;
-    shift -= (inverse_mass * rest) * expected_late_force;
-    turn -= inverse_inertia * (rest * expected_late_torque);
+    Vec3 late_force = expected_late_force, late_torque = expected_late_torque;
+    is_settled = false;
+    for (BodySupport& support : supports) {
+        support.given = (support.past_impulse + step_time / n * support.given) / step_time;
+        if (!is_off_path) continue;
+        late_force -= support.path_force - support.given;
+        late_torque -= cross(support.anchor, support.path_force - support.given);
+    }
+    shift -= (inverse_mass * rest) * late_force;
+    turn -= inverse_inertia * (rest * late_torque);
+}
+
+Vec3 TouchedBody::path_displacement(double time, Vec3 anchor, bool turns) const {
+    const Vec3 moved = time * path_velocity + bend(time) * path_acceleration;
+    return turns ? moved + rotation_on_path(time, {}) * anchor - anchor : moved;
+}
+
+void TouchedBody::move(Vec3 given, Vec3 given_turn, double h) {
+    const Vec3 faster = inverse_mass * given, turning = inverse_inertia * given_turn;
+    velocity += faster;
+    shift += h * faster;
+    spin += turning;
+    turn += h * turning;
 }
 
 void TouchedBody::push(Vec3 given, Vec3 arm, double h) {
     if (!is_dynamic) return;
-    const Vec3 faster = inverse_mass * given;
-    velocity += faster;
-    shift += h * faster;
+    move(given, cross(arm, given), h);
     impulse += given;
-    push_turn(cross(arm, given), h);
+    angular_impulse += cross(arm, given);
 }
 
 void TouchedBody::push_turn(Vec3 given, double h) {
     if (!is_dynamic) return;
-    const Vec3 turning = inverse_inertia * given;
-    spin += turning;
-    turn += h * turning;
+    move({}, given, h);
     angular_impulse += given;
+}
+
+void TouchedBody::bear(Vec3 given, Vec3 arm, double h) {
+    move(given, cross(arm, given), h);
+    is_settled = true;
+}
+
+void TouchedBody::close_supports(double h) {
+    if (!is_settled) return;
+    for (BodySupport& support : supports) {
+        support.given = support.impulse / h;
+        support.impulse = {};
+    }
 }
 
 PartPushes::PartPushes(std::span<const TouchedBody> bodies) {

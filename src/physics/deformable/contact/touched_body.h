@@ -14,6 +14,25 @@
 
 namespace embody::physics::deformable {
 
+/// What bears a body on the rigid side: a point of contact with something that does not give way, or a joint to it
+/// (docs/physics/coupling.md). Forces are those of the body on what bears it, N.
+struct BodySupport {
+    Vec3 anchor;                   ///< on the body, from its centre of mass when the step began, m
+    bool is_joint = false;         ///< holds in both directions
+    Mat3 held = Mat3::identity();  ///< of a joint: projection onto the directions that it holds, when the step began
+    bool turns = true;             ///< the anchor turns with the body; else the body rolls on it
+    Vec3 normal;                   ///< of a contact: unit, towards what bears the body
+    double gap = 0;                ///< when the step began, m
+    Vec3 velocity;                 ///< of what bears it, m/s
+    PairFriction friction;
+    bool sticks = true;
+    Vec3 path_force;    ///< mean over the body's path; of a joint: 0, for only changes count
+    Vec3 force;         ///< in the last solve
+    Vec3 given;         ///< that the body's motion includes in this substep
+    Vec3 impulse;       ///< of the group that is being solved, in this substep so far, N s
+    Vec3 past_impulse;  ///< of the motion in the substeps before this one, N s
+};
+
 /// A rigid body near a deformable. It has made its step already: through the substeps it moves along the path of that
 /// step and, in addition, by the nodes' pushes.
 struct TouchedBody {
@@ -34,6 +53,11 @@ struct TouchedBody {
     Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path includes already, N and N m
     Vec3 expected_late_force, expected_late_torque;  ///< the part of these that acts for the whole step at its end
 
+    std::vector<BodySupport> supports;
+    Vec3 borne_force, borne_torque;  ///< of these on the body along its path, N and N m
+    bool is_off_path = false;  ///< pushes of the last step were taken off in this substep, and so were these forces
+    bool is_settled = false;   ///< a solve of this substep included the supports
+
     Vec3 shift, turn;                         ///< displacement off the path so far, m and rad
     Vec3 velocity, spin;                      ///< velocities beyond the path's, m/s and rad/s
     Vec3 impulse, angular_impulse;            ///< pushes of this step so far, N s and N m s about the centre of mass
@@ -52,20 +76,32 @@ struct TouchedBody {
     [[nodiscard]] Mat3 rotation_before(double h, double time) const {
         return rotation_on_path(time - h, turn - h * spin);
     }
+    /// Displacement of the point at `anchor` (from the centre of mass when the step began) on the path alone, since
+    /// then. `turns`: with the body.
+    [[nodiscard]] Vec3 path_displacement(double time, Vec3 anchor, bool turns) const;
     /// Displacement of the point at `arm` from its centre in the substep of h seconds that ends at `time`, m.
     [[nodiscard]] Vec3 displacement(double h, double time, Vec3 arm) const;
-    /// Moves it into a substep of h seconds: takes off the pushes that the path includes already, goes on with the
-    /// rest.
+    /// Of its supports, which are complete.
+    void set_borne_forces();
+    /// Moves it into a substep of h seconds: takes off the pushes that the path includes already, and with these the
+    /// forces of what bears it: both may be a thousand times the weight of a light body, their sum is not. Goes on with
+    /// the rest.
     void enter_substep(double h);
     /// After the last of `substeps`, before the deformables that push it once for the whole step: a push that is
     /// applied at once moves it further than one taken off in parts, so the rest of the displacement is taken off here.
     void enter_whole_step(int substeps);
     /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
     void push(Vec3 impulse, Vec3 arm, double h);
+    /// As push(), by what bears the body: deformables do not push it by that.
+    void bear(Vec3 impulse, Vec3 arm, double h);
+    /// After a group of deformables is solved for a substep of h seconds: its motion includes what the supports did.
+    void close_supports(double h);
     /// Angular impulse (N m s) in a substep of h seconds.
     void push_turn(Vec3 angular_impulse, double h);
 
 private:
+    [[nodiscard]] bool is_pushed_on_path() const { return expected_force != Vec3{} || expected_torque != Vec3{}; }
+    void move(Vec3 impulse, Vec3 angular_impulse, double h);
     [[nodiscard]] Mat3 rotation_on_path(double time, Vec3 off) const;
     // A path of constant acceleration differs from the straight one by this times the acceleration, s².
     [[nodiscard]] double bend(double time) const { return time * (time - step_time) / 2; }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "physics/deformable/contact/free_motion.h"
 
@@ -175,6 +176,7 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
     for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves[b]);
     for (const TouchSpring& spring : springs_.springs()) sum += spring_energy(spring, moves, body_moves);
     for (const TouchSpring& spring : held_) sum += energy_of(spring, moves, body_moves);
+    for (const TouchSpring& spring : supports_.springs()) sum += energy_of(spring, moves, body_moves);
     if (!clamps_.holds_any()) return sum;
     std::vector<Vec3> at(moves.size());
     for (std::size_t i = 0; i < moves.size(); ++i) at[i] = nodes_.position[i] + moves[i];
@@ -233,15 +235,9 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
 // their sideways stiffness: only the forces have it.
 bool RopeLine::solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias) {
     next_body_moves_ = body_moves_;
-    std::vector<TouchSpring> all;
-    if (!held_.empty()) {
-        all.assign(springs_.springs().begin(), springs_.springs().end());
-        all.insert(all.end(), held_.begin(), held_.end());
-    }
-    const auto solve = [&] {
-        return system_.solve(all.empty() ? springs_.springs() : all, inertias, fixed_, next_moves_, next_body_moves_,
-                             moments_);
-    };
+    std::vector<TouchSpring> all = all_springs();
+    all.insert(all.end(), held_.begin(), held_.end());
+    const auto solve = [&] { return system_.solve(all, inertias, fixed_, next_moves_, next_body_moves_, moments_); };
     if (!solve()) {
         if (!clamps_.has_twist()) return false;
         assemble(substep, false);
@@ -257,6 +253,8 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
     TouchSprings chosen = springs_;
     chosen.choose(moves_, body_moves_, true);
+    SupportSprings chosen_supports = supports_;
+    chosen_supports.choose(body_moves_, true, springs_.tolerance);
     // Starts from rest or from inertia, whichever is closer to the solution: a start with no more energy than rest
     // gains none.
     const std::vector<Vec3> rest(moves_.size());
@@ -270,6 +268,7 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     double least = merit_pressed(substep, inertias);
     for (iterations_ = 1;; ++iterations_) {
         springs_ = chosen;
+        supports_ = chosen_supports;
         if (iterations_ > 1) assemble(substep);
         if (!solve_iteration(substep, inertias)) return false;
         const std::vector<Vec3> before = moves_;
@@ -279,7 +278,8 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
             if (!is_finite(moves_[i])) return false;
             change = std::max(change, length(moves_[i] - before[i]));
         }
-        const bool has_changed = chosen.choose(moves_, body_moves_, false);
+        bool has_changed = chosen.choose(moves_, body_moves_, false);
+        has_changed |= chosen_supports.choose(body_moves_, false, springs_.tolerance);
         if (!has_changed && change < move_tolerance) return true;
         if (const double left = merit_pressed(substep, inertias); left < least) {
             least = left;
@@ -289,6 +289,7 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
             moves_ = best_moves;
             body_moves_ = best_body_moves;
             springs_.choose(moves_, body_moves_, false);
+            supports_.choose(body_moves_, false, springs_.tolerance);
         }
         if (iterations_ == max_iterations) return true;
     }
@@ -360,14 +361,27 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     if (is_frozen_) return;
     held_.assign(held.begin(), held.end());
     begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
+    begin_supports(substep, bodies);
     if (!solve_moves(substep, bodies)) return freeze();
     std::vector<double> fractions;
     if (!clamps_.holds_any())
-        fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
+        fractions = fractions_of(all_springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
     const FreePart part{&nodes_, take_impulses(substep, moves_), moves_};
     if (is_free()) keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
     finish(substep, moves_, body_moves_, bodies, fractions);
+    supports_.finish(body_moves_, substep.h, bodies, fractions);
     move_nodes(moves_, substep.h);
+}
+
+void RopeLine::begin_supports(const Substep& substep, std::span<const TouchedBody> bodies) {
+    supports_.begin(springs_.springs(), bodies, std::accumulate(nodes_.mass.begin(), nodes_.mass.end(), 0.0), substep);
+}
+
+// Of contacts, attachments and supports.
+std::vector<TouchSpring> RopeLine::all_springs() const {
+    std::vector<TouchSpring> all(springs_.springs().begin(), springs_.springs().end());
+    all.insert(all.end(), supports_.springs().begin(), supports_.springs().end());
+    return all;
 }
 
 bool RopeLine::is_free() const {

@@ -5,6 +5,7 @@
 
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/contact/support_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_clamps.h"
 #include "physics/deformable/rope/rope_system.h"
@@ -105,6 +106,8 @@ private:
     [[nodiscard]] double merit_pressed(const Substep& substep, std::span<const BodyInertia> inertias) const;
     bool take_step(const Substep& substep, std::span<const BodyInertia> inertias);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies);
+    void begin_supports(const Substep& substep, std::span<const TouchedBody> bodies);
+    [[nodiscard]] std::vector<TouchSpring> all_springs() const;
     void break_segments();
     [[nodiscard]] Tension tension_at(std::size_t segment, double length) const;
     [[nodiscard]] Tension damped_tension_at(std::size_t segment, double length, double h) const;
@@ -116,6 +119,7 @@ private:
     std::vector<RopeSegment> segments_;
     std::vector<bool> fixed_;
     TouchSprings springs_;
+    SupportSprings supports_;  // of the bodies that it pushes, where it is solved alone
     RopeClamps clamps_;
     std::vector<double> tensions_;
     std::vector<Break> new_breaks_;

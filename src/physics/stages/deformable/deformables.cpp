@@ -11,6 +11,7 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
+#include "physics/stages/deformable/body_supports.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
 #include "physics/stages/deformable/thin_groups.h"
@@ -241,6 +242,18 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
     }
 }
 
+// The fraction of a body's pushes that the next rigid step takes as constant forces. What bears a light body under a
+// heavy sheet answers the rest of them in the solve of the deformables alone: held through a step while the body tilts,
+// a push of hundreds of times its weight would throw it away.
+double fraction_for_rigid_step(const DeformableAccess& world, const TouchedBody& body, double reach) {
+    const ThinContactSettings& settings = world.settings.solver.deformable.thin_contact;
+    if (body.supports.empty()) return 1;
+    const double dt = world.settings.time_step, g = std::max(length(world.settings.gravity), settings.min_gravity);
+    const double push = length(body.impulse) + (reach > 0 ? length(body.angular_impulse) / reach : 0);
+    const double most = settings.max_push_in_weights * g * dt / body.inverse_mass;
+    return push > most ? most / push : 1;
+}
+
 // Moves the bodies to where the pushes have brought them, and stores the pushes for the rigid bodies' next step.
 // Sleepers wake if the push has changed since they fell asleep.
 void put_back_bodies(const DeformableAccess& world, const MovingDeformables& moving) {
@@ -262,10 +275,11 @@ void put_back_bodies(const DeformableAccess& world, const MovingDeformables& mov
                 world.activity.to_wake.push_back(body.body);
             continue;
         }
-        record.deformable_force = force;
-        record.deformable_torque = torque;
-        record.late_force = body.late_impulse / dt;
-        record.late_torque = body.late_angular_impulse / dt;
+        const double kept = fraction_for_rigid_step(world, body, record.reach);
+        record.deformable_force = kept * force;
+        record.deformable_torque = kept * torque;
+        record.late_force = (kept / dt) * body.late_impulse;
+        record.late_torque = (kept / dt) * body.late_angular_impulse;
         if (force != Vec3{} || torque != Vec3{}) world.deformables.pushed_bodies.push_back(body.body);
         if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
             continue;
@@ -424,6 +438,7 @@ void advance_deformables(const DeformableAccess& world) {
     gather_bodies(world, moving);
     moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
+    find_supports(world, moving.contacts, moving.thin, moving.bodies);
     moving.groups = find_thin_groups(world, moving.thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);

@@ -126,14 +126,19 @@ void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies) {
     }
 }
 
-// Of all members and the bodies near them, kg.
-double ThinGroupPart::carried_mass(std::span<const TouchedBody> bodies) const {
+double ThinGroupPart::mass_of_members() const {
     double mass = 0;
-    for (const TouchedBody& body : bodies) {
-        if (body.inverse_mass > 0) mass += 1 / body.inverse_mass;
-    }
     for (const ThinMember& member : seen_) {
         for (const double of_node : member.surface.nodes->mass) mass += of_node;
+    }
+    return mass;
+}
+
+// Of all members and the bodies near them, kg.
+double ThinGroupPart::carried_mass(std::span<const TouchedBody> bodies) const {
+    double mass = mass_of_members();
+    for (const TouchedBody& body : bodies) {
+        if (body.inverse_mass > 0) mass += 1 / body.inverse_mass;
     }
     return mass;
 }
@@ -168,11 +173,20 @@ void ThinGroupPart::begin_pairs(std::span<const TouchedBody> bodies) {
     ties_.begin(ties, h_, gravity, settings);
 }
 
+void ThinGroupPart::begin_supports(std::span<const TouchedBody> bodies) {
+    std::vector<TouchSpring> touching;
+    for (const Member& member : members_)
+        touching.insert(touching.end(), member.touch.springs().begin(), member.touch.springs().end());
+    supports_.begin(touching, bodies, mass_of_members(), members_[0].substep);
+    supports_.choose(body_moves_, true, 0);
+}
+
 void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     body_moves_.assign(bodies.size(), {});
     begin_members(bodies);
     load_nodes(bodies);
     begin_pairs(bodies);
+    begin_supports(bodies);
     for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, true);
     pairs_.choose(moves_, true);
     // Starts from rest or from inertia, whichever is closer to the solution, as RopeLine does.
@@ -196,6 +210,7 @@ void ThinGroupPart::gather_springs() {
     }
     springs_.insert(springs_.end(), pairs_.springs().begin(), pairs_.springs().end());
     springs_.insert(springs_.end(), ties_.springs().begin(), ties_.springs().end());
+    springs_.insert(springs_.end(), supports_.springs().begin(), supports_.springs().end());
 }
 
 // True where the springs that act have changed. Those of the last solve (`is_last`) stay as they were in it, so that
@@ -209,10 +224,23 @@ bool ThinGroupPart::choose_again(bool is_last) {
     }
     PairSprings pairs = pairs_;
     has_changed |= pairs.choose(moves_, false);
+    SupportSprings supports = supports_;
+    has_changed |= supports.choose(body_moves_, false, world_.settings.solver.deformable.thin_contact.change_tolerance);
     if (!has_changed || is_last) return has_changed;
     for (std::size_t m = 0; m < members_.size(); ++m) members_[m].touch = std::move(touch[m]);
     pairs_ = std::move(pairs);
+    supports_ = std::move(supports);
     return true;
+}
+
+// The last solve's forces of nodes, and what bears the bodies under these.
+void ThinGroupPart::settle_bodies(std::span<const BodyInertia> inertias) {
+    const DeformableSettings& settings = world_.settings.solver.deformable;
+    for (int i = 0; i < settings.cloth.max_solves; ++i) {
+        if (!supports_.choose(body_moves_, false, settings.thin_contact.change_tolerance)) break;
+        gather_springs();
+        balance_bodies(springs_, inertias, moves_, body_moves_);
+    }
 }
 
 // Contacts for one more solve of what would pass through each other by the solved moves.
@@ -336,6 +364,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
             }
         }
         if (has_changed && !is_last_solve) continue;
+        settle_bodies(inertias);
         const std::vector<ThinMeeting> meetings = CrossingGuard(seen_, guarded_, world_.workers).find(moves_);
         if (meetings.empty()) return Outcome::solved;
         const bool is_last = meeting_solves++ == settings.cloth.max_meeting_solves;
@@ -433,6 +462,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
         else if (RopeLine* rope = member.record().rope(); !rope->has_clamps())
             rope->finish(member.substep, moves, body_moves_, bodies, fractions);
     }
+    supports_.finish(body_moves_, h_, bodies, has_ropes() ? std::span(fractions) : std::span<const double>());
     CrossingGuard(seen_, guarded_, world_.workers).hold(compliance, moves_);
     for (Member& member : members_) {
         const std::span<const Vec3> moves = part(moves_, member);

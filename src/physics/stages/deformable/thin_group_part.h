@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/deformable/contact/crossing_guard.h"
+#include "physics/deformable/contact/support_springs.h"
 #include "physics/deformable/contact/tie_springs.h"
 #include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_groups.h"
@@ -38,6 +39,8 @@ private:
     void begin_members(std::span<const TouchedBody> bodies);
     void load_nodes(std::span<const TouchedBody> bodies);
     void begin_pairs(std::span<const TouchedBody> bodies);
+    void begin_supports(std::span<const TouchedBody> bodies);
+    [[nodiscard]] double mass_of_members() const;
     [[nodiscard]] double carried_mass(std::span<const TouchedBody> bodies) const;
     enum class Outcome : std::uint8_t { solved, too_fast, not_finite };
     Outcome solve(std::span<const TouchedBody> bodies, bool is_shortest);
@@ -48,6 +51,7 @@ private:
                                 SpringEnergy spring_energy);
     double go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
     bool choose_again(bool is_last);
+    void settle_bodies(std::span<const BodyInertia> inertias);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
     void keep_momenta();
@@ -65,6 +69,7 @@ private:
     std::vector<CrossingGuard::Pair> guarded_;  // the same
     PairSprings pairs_;                         // of `met_`
     TieSprings ties_;
+    SupportSprings supports_;
     std::vector<TouchSpring> springs_;  // of all
     std::vector<Vec3> moves_, from_;    // by node of all
     std::vector<BodyMove> body_moves_, body_from_;

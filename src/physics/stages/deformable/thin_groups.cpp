@@ -120,6 +120,43 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         ties[i].take(thin[group.members[i]]);
     }
     bodies.resize(first);
+    for (TouchedBody& body : bodies) body.close_supports(h);
+}
+
+// Whether what bears the body was taken off its path and is in no solve yet. `is_late`: whether pushes for the whole
+// step or those of each substep are meant.
+bool is_unsettled(const TouchedBody& body, bool is_late) {
+    const bool was_late = body.expected_late_force != Vec3{} || body.expected_late_torque != Vec3{};
+    return body.is_off_path && was_late == is_late && !body.supports.empty() && !body.is_settled;
+}
+
+// Bodies that no group has pushed in a substep of h seconds but whose paths include pushes of the last step: borne by
+// what still bears them without these.
+void settle_bodies(const DeformableAccess& world, std::span<TouchedBody> bodies, double h, double time, bool is_late) {
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        if (is_unsettled(bodies[b], is_late)) numbers.push_back(b);
+    }
+    if (numbers.empty()) return;
+    const DeformableSettings& settings = world.settings.solver.deformable;
+    const Substep substep{.h = h, .time = time, .gravity = world.settings.gravity, .settings = settings};
+    const std::vector<BodyInertia> inertias = inertias_of(bodies, h);
+    std::vector<BodyMove> moves(bodies.size());
+    SupportSprings supports;
+    supports.begin(numbers, bodies, 0, substep);
+    supports.choose(moves, true, 0);
+    world.deformables.pair_solver.set(settings.cloth);
+    for (int solves = 1;; ++solves) {
+        if (world.deformables.pair_solver.solve({}, {}, supports.springs(), inertias, {}, moves, world.workers) ==
+            ClothSolver::not_finite)
+            return;
+        SupportSprings next = supports;
+        if (!next.choose(moves, false, settings.thin_contact.change_tolerance) || solves == settings.cloth.max_solves)
+            break;
+        supports = std::move(next);
+    }
+    supports.finish(moves, h, bodies);
+    for (TouchedBody& body : bodies) body.close_supports(h);
 }
 
 // Ties by index in `thin`; ties to what is gone or does not move hold nothing.
@@ -285,6 +322,7 @@ void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGrou
     for (const ThinGroup& group : groups) {
         if (group.in_substeps) advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
     }
+    settle_bodies(world, bodies, h, (k - 1) * h, false);
     if (k < substeps) return;
     for (TouchedBody& body : bodies) {
         body.enter_whole_step(substeps);
@@ -294,6 +332,7 @@ void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGrou
     for (const ThinGroup& group : groups) {
         if (!group.in_substeps) advance_group(world, group, thin, step, 0, bodies, surfaces);
     }
+    settle_bodies(world, bodies, step, 0, true);
     for (TouchedBody& body : bodies) {
         body.late_impulse = body.impulse - body.late_impulse;
         body.late_angular_impulse = body.angular_impulse - body.late_angular_impulse;
