@@ -46,9 +46,11 @@ TEST(GrainMaterial, RollsOnWhatIsNoGrainNotBeforeItSlides) {
             const Material grain = grain_material(angle, diameter), plank{.friction_rolling = 1e-5};
             const Material on_plank = combine(grain, plank, {}), on_grain = combine(grain, grain, {});
             EXPECT_EQ(on_grain.friction_rolling, grain.friction_rolling);
-            EXPECT_NEAR(2 * on_plank.friction_rolling / diameter, std::min(grain.friction_static, 0.1 / diameter),
-                        1e-12);
-            EXPECT_EQ(combine(plank, grain, {}).friction_rolling, on_plank.friction_rolling);
+            EXPECT_EQ(on_grain.friction_rolling_on_others, 0);
+            EXPECT_NEAR(2 * on_plank.friction_rolling_on_others / diameter,
+                        std::min(grain.friction_static, 0.1 / diameter), 1e-12);
+            EXPECT_EQ(combine(plank, grain, {}).friction_rolling_on_others, on_plank.friction_rolling_on_others);
+            EXPECT_EQ(on_plank.friction_rolling, std::max(grain.friction_rolling, plank.friction_rolling));
         }
     }
 }
