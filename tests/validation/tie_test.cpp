@@ -97,6 +97,24 @@ TEST(Tie, ABannerOnARopeIsCarriedByTheRopesEnds) {
     }
 }
 
+// All rows of a sheet's upper half are drawn onto one line through each other, which no contact may prevent.
+TEST(Tie, RowsThatAreTiedToOneLineGatherThere) {
+    const auto world = make_world({.air_density = 0});
+    auto rope = line({-1, 3, 0}, {1, 3, 0}, 0.1);
+    rope.pinned = {0, static_cast<std::uint32_t>(rope.nodes.size() - 1)};
+    const DeformableHandle held = world->create_deformable(rope).value();
+    auto towel = sheet(0.5, 0.5, {0, 2.75, 0}, 0.3);
+    for (std::uint32_t i = 0; i < towel.nodes.size(); ++i) {
+        const Vec3 at = transform_point(towel.pose, towel.nodes[i]);
+        if (length(at - Vec3{0, 3, 0}) < 0.3) towel.ties.push_back(*world->nearest_tie(i, held, at));
+    }
+    ASSERT_GT(towel.ties.size(), 50u);
+    const DeformableHandle cloth = world->create_deformable(towel).value();
+    ASSERT_GT(widest_gap(*world, cloth), 0.25);
+    run(*world, 3);
+    EXPECT_LT(widest_gap(*world, cloth), 5e-3);
+}
+
 // A rope hung from the middle of another, with a ball at its end from a thousandth to a thousand times its mass.
 TEST(Tie, ARopeHangsOnARope) {
     for (const double ball_mass : {1e-4, 0.05, 1.0, 70.0}) {

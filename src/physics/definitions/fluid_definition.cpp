@@ -34,6 +34,13 @@ Result<void> check_points(const std::string& name, const std::vector<Vec3>& poin
 
 }  // namespace
 
+Result<void> validate(const LiquidMatter& matter) {
+    return first_error(check_number("density", matter.density, 1, 25'000, "kg/m³"),
+                       check_number("viscosity", matter.viscosity, 0, 10'000, "Pa s"),
+                       check_number("yield_stress", matter.yield_stress, 0, 10'000, "Pa"),
+                       check_number("surface_tension", matter.surface_tension, 0, 10, "N/m"));
+}
+
 Result<void> validate(const FluidDefinition& definition) {
     const FluidDefinition& d = definition;
     if (d.boxes.empty() && d.hulls.empty() && d.points.empty())
@@ -44,10 +51,7 @@ Result<void> validate(const FluidDefinition& definition) {
     }
     if (auto result = check_points("points", d.points); !result) return result;
     return first_error(check_vector("velocity", d.velocity, largest_linear_speed, "m/s"),
-                       check_number("density", d.density, 1, 25'000, "kg/m³"),
-                       check_number("viscosity", d.viscosity, 0, 10'000, "Pa s"),
-                       check_number("yield_stress", d.yield_stress, 0, 10'000, "Pa"),
-                       check_number("surface_tension", d.surface_tension, 0, 10, "N/m"),
+                       validate(LiquidMatter{d.density, d.viscosity, d.yield_stress, d.surface_tension}),
                        check_number("cell_size", d.cell_size, 0.001, 1, "m"),
                        check_number("gravity_factor", d.gravity_factor, -10, 10));
 }

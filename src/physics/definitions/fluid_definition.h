@@ -13,7 +13,8 @@
 namespace embody::physics {
 
 /// A body of liquid. Its volume at the start is the union of boxes, convex hulls and single particles, all in world
-/// coordinates, without what bodies fill. Fluids do not interact: two of them pass through each other.
+/// coordinates, without what bodies fill. Fluids do not interact: two of them pass through each other. Liquids that
+/// meet are of one fluid: World::set_liquid.
 struct FluidDefinition {
     std::vector<Bounds> boxes;             ///< m
     std::vector<std::vector<Vec3>> hulls;  ///< the convex hull of each list of points, m
@@ -28,11 +29,22 @@ struct FluidDefinition {
     bool allow_sleep = true;     ///< may sleep while nothing moves in it
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
+/// What one of the liquids of a fluid is made of; limits as in FluidDefinition.
+struct LiquidMatter {
+    double density = 998;        ///< kg/m³
+    double viscosity = 0.001;    ///< dynamic, Pa s
+    double yield_stress = 0;     ///< Pa
+    double surface_tension = 0;  ///< N/m
+
+    bool operator==(const LiquidMatter&) const = default;
+};
+
 /// Maximum number of particles of a fluid.
 inline constexpr std::size_t max_fluid_particles = 4'000'000;
 
 /// The error's `where` is the field, e.g. "boxes[2].lower.x".
 Result<void> validate(const FluidDefinition& definition);
+Result<void> validate(const LiquidMatter& matter);
 
 /// A fluid's particles as they are now; valid until the world changes.
 struct FluidParticles {

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "foundation/zone.h"
-#include "physics/fluid/grid/faces.h"
 #include "physics/fluid/obstacles/small_body.h"
 #include "physics/fluid/obstacles/wall_friction.h"
 #include "physics/fluid/particles/collide_particles.h"
 #include "physics/fluid/particles/drops.h"
+#include "physics/fluid/particles/settling.h"
 #include "physics/fluid/particles/transfer.h"
 
 namespace embody::physics::fluid {
@@ -27,7 +27,7 @@ void set_gradient(const float* gradient, float steepest, float* affine) {
 
 FluidSolver::FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties,
                          std::span<const Vec3f> positions, Vec3 velocity)
-    : origin_(origin), properties_(properties), grid_(cell_size), obstacles_(origin) {
+    : origin_(origin), liquids_(properties), grid_(cell_size), obstacles_(origin) {
     add_particles(positions);
     for (FluidParticle& particle : particles_) {
         for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(velocity[axis]);
@@ -48,6 +48,7 @@ std::vector<FluidParticle> FluidSolver::take_particles(FluidIds ids) {
         return ids.contains(particle.id);
     });
     std::ranges::sort(taken, {}, &FluidParticle::id);
+    liquids_.keep_liquids_of(particles_);
     return taken;
 }
 
@@ -60,6 +61,11 @@ FluidIds FluidSolver::add_particles(std::vector<FluidParticle> particles, Vec3 o
     }
     particles_.insert(particles_.end(), particles.begin(), particles.end());
     return {first, next_id_};
+}
+
+void FluidSolver::set_matter(FluidIds ids, const FluidProperties& matter) {
+    liquids_.assign(ids, matter);
+    liquids_.keep_liquids_of(particles_);
 }
 
 void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
@@ -79,6 +85,7 @@ void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
         }
         return false;
     });
+    liquids_.keep_liquids_of(particles_);
 }
 
 double FluidSolver::usual_speed(TaskPool& workers) const {
@@ -105,9 +112,14 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     const int max_parts = settings_.parts.max_parts;
     const double h = grid_.cell_size();
     const double cells = (speed_ + length(gravity) * dt) * dt / (settings_.parts.max_displacement * h);
-    const double tension = properties_.surface_tension, density = properties_.density;
-    is_tense_ = is_tense(settings_.tension, tension, density, length(gravity), h);
-    const double parts = std::max(cells, is_tense_ ? std::sqrt(tension / steady_tension(density, h, dt)) : 0.0);
+    double parts = cells;
+    is_tense_ = false;
+    for (const FluidProperties& liquid : liquids_.liquids()) {
+        const double tension = liquid.surface_tension;
+        if (!is_tense(settings_.tension, tension, liquid.density, length(gravity), h)) continue;
+        is_tense_ = true;
+        parts = std::max(parts, std::sqrt(tension / steady_tension(liquid.density, h, dt)));
+    }
     outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(max_parts)));
     outcome.is_slowed = cells > max_parts;
     obstacles_.begin(obstacles, settings_.obstacles, grid_);
@@ -143,9 +155,10 @@ void FluidSolver::put_at_rest(std::span<const Vec3f> positions, std::span<const 
 }
 
 Conserved FluidSolver::conserved(Vec3 gravity) const {
-    const double mass = properties_.density * properties_.particle_volume;
     Conserved sum;
     for (const FluidParticle& particle : particles_) {
+        const FluidProperties& liquid = liquids_.of(particle.id);
+        const double mass = liquid.density * liquid.particle_volume;
         const float *x = particle.position, *v = particle.velocity;
         const Vec3 place = origin_ + Vec3{x[0], x[1], x[2]}, velocity{v[0], v[1], v[2]};
         sum.kinetic_energy += mass / 2 * length_squared(velocity);
@@ -158,7 +171,7 @@ Conserved FluidSolver::conserved(Vec3 gravity) const {
 
 float FluidSolver::particle_fraction() const {
     const double h = grid_.cell_size();
-    return static_cast<float>(properties_.particle_volume / (h * h * h));
+    return static_cast<float>(properties().particle_volume / (h * h * h));
 }
 
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
@@ -167,14 +180,15 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     std::vector<Bounds> near = obstacles_.in_reach(dt, grid_.cell_size());
     immersed_.add_reach(dt, grid_.cell_size(), near);
     grid_.sort(particles_, particle_fraction(), near, settings_.cells, workers);
+    liquids_.identify(particles_, workers);
     obstacles_.measure(dt, grid_, workers);
     immersed_.measure(dt, grid_);
     obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
     if (has_liquid) advance_grid(dt, gravity, outcome, workers);
-    move_particles(dt, workers);
+    move_particles(dt, gravity, workers);
     fly(dt, gravity * dt, workers);
-    if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, particle_mass(), particles_);
+    if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, liquids_, particles_);
     obstacles_.advance(dt);
     immersed_.advance(dt);
 }
@@ -183,30 +197,38 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     EMBODY_ZONE("advance grid");
     const double h = grid_.cell_size();
     find_places(dt, workers);
-    particles_to_grid(grid_, particles_, places_, particle_fraction(), workers);
-    immersed_.find_conductance(dt, {properties_.density, properties_.viscosity}, particle_mass(), grid_);
+    particles_to_grid(grid_, particles_, places_, {particle_fraction(), liquids_}, workers);
+    immersed_.find_conductance(dt, liquids_, grid_);
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, settings_, workers);
-    components_.begin(grid_, system_, obstacles_, immersed_, particles_, {is_tense_, settings_.components});
-    obstacles_.list_areas(grid_, gravity * properties_.density);
+    components_.begin(grid_, system_, obstacles_, immersed_, particles_, {liquids_, is_tense_, settings_.components});
+    const double density = properties().density;
+    obstacles_.list_areas(grid_, gravity * density);
     impulse_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
-    const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
-    if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome, workers);
-    apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity, particle_mass(), dt, workers);
-    for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
+    const auto resists = [&](const FluidProperties& of) { return is_viscous(of, settings_.viscosity, h, dt); };
+    if (std::ranges::any_of(liquids_.liquids(), resists)) shear(dt, outcome, workers);
+    apply_wall_friction(grid_, obstacles_, liquids_, dt, workers);
+    for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, density, gravity, moving);
     immersed_.predict(dt, grid_);
     project(dt, outcome, workers);
-    for (MovingObstacle& moving : obstacles_.moving())
-        drag_small_body(grid_, properties_.density, properties_.viscosity, particle_mass(), dt, moving);
+    for (MovingObstacle& moving : obstacles_.moving()) drag_small_body(grid_, liquids_, dt, moving);
     // Next to the liquid the air's faces move with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_obstacles(grid_, obstacles_, sticking_of(liquid, settings_.viscosity, h, speed_), workers);
+    follow_obstacles(grid_, obstacles_, sticking(), workers);
     spread_out(workers);
+}
+
+Sticking FluidSolver::sticking() const {
+    const auto of = [this](const FluidProperties& liquid) {
+        return sticking_of(liquid, settings_.viscosity, grid_.cell_size(), speed_);
+    };
+    if (liquids_.is_one()) return [one = of(liquids_.first())](int, int) { return one; };
+    return [this, of](int axis, int cell) { return liquids_.mean_at_face(grid_, axis, cell, of); };
 }
 
 void FluidSolver::find_places(double dt, TaskPool& workers) {
@@ -232,14 +254,14 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
 // The last pressure acts meanwhile, on the liquid and on the bodies in it, and is taken back for project() to find the
 // present one: without it viscosity met all that gravity does in the step, at walls most of all, and thick liquid that
 // should rest flowed.
-void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers) {
+void FluidSolver::shear(double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve viscosity");
-    const double scale = dt / (properties_.density * grid_.cell_size());
-    viscosity_.begin(liquid, dt, settings_.viscosity, grid_, obstacles_);
+    const double scale = dt / (properties().density * grid_.cell_size());
+    viscosity_.begin(liquids_, dt, settings_.viscosity, grid_, obstacles_);
     subtract_last_gradient(grid_, scale, workers);
     change_obstacles(impulse_, 1);
     change_by_films(dt);
-    const int iterations = viscosity_.solve(liquid, dt, grid_, obstacles_);
+    const int iterations = viscosity_.solve(liquids_, dt, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= settings_.viscosity.max_iterations;
     subtract_last_gradient(grid_, -scale, workers);
@@ -251,7 +273,7 @@ void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcom
 void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve pressure");
     const int max_iterations = settings_.pressure.max_iterations;
-    const double h = grid_.cell_size(), rho = properties_.density;
+    const double h = grid_.cell_size(), rho = properties().density;
     change_by_films(dt);
     outflow(grid_, obstacles_, system_, flow_, workers);
     immersed_.add_outflow(grid_, flow_);
@@ -278,8 +300,22 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
 // The pressure at the surface by its curvature. Where the parts of a step are too few, the tension is the largest that
 // is stable.
 void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
-    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
-    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
+    const double h = grid_.cell_size();
+    const auto tension_of = [&](const FluidProperties& liquid) {
+        return std::min(liquid.surface_tension, steady_tension(liquid.density, h, dt));
+    };
+    double most = 0;
+    for (const FluidProperties& liquid : liquids_.liquids()) most = std::max(most, tension_of(liquid));
+    surface_.measure(most * dt, settings_.tension, grid_, workers);
+    if (!liquids_.is_one()) {
+        std::vector<float> fractions(grid_.row.size(), 1);
+        grid_.for_tiles(workers, [&](const Cell& corner) {
+            grid_.for_cells(corner, [&](int cell, const Cell&) {
+                fractions[cell] = static_cast<float>(liquids_.mean(grid_, cell, tension_of) / most);
+            });
+        });
+        surface_.set_fractions(std::move(fractions));
+    }
     add_surface_pressure(grid_, system_, surface_, flow_, workers);
 }
 
@@ -357,10 +393,10 @@ void FluidSolver::spread_out(TaskPool& workers) {
     subtract_gradient(grid_, {system_, potential_, {}, grid_.cell_size()}, grid_.shift, workers);
 }
 
-void FluidSolver::move_particles(double dt, TaskPool& workers) {
+void FluidSolver::move_particles(double dt, Vec3 gravity, TaskPool& workers) {
     EMBODY_ZONE("move particles");
     const auto time = static_cast<float>(dt);
-    const DropSurroundings around{grid_, obstacles_, properties_, settings_.drops, dt};
+    const DropSurroundings around{grid_, obstacles_, settings_.drops, dt};
     const std::size_t count = grid_.on_grid();
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
@@ -373,7 +409,11 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
             // A drop reads back what it wrote: a gradient that it carried would stay for ever.
             const bool is_single = is_drop(grid_, places_[i].data());
             const float steepest = is_single ? 0 : 1 / time;
-            if (is_single) slow_at_wall(around, places_[i].data(), sample.value);
+            if (is_single) slow_at_wall(around, liquids_.at(i), places_[i].data(), sample.value);
+            if (!liquids_.is_one() && !is_single) {
+                const Vec3 change = to_vec(sample.value) - to_vec(particle.velocity);
+                settle(grid_, liquids_, i, places_[i].data(), gravity - change / dt, dt, shift);
+            }
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);
@@ -392,7 +432,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
 // Drops away from all liquid: only walls that do not move are within reach.
 void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
     const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
-    const DropSurroundings around{grid_, obstacles_, properties_, settings_.drops, dt};
+    const DropSurroundings around{grid_, obstacles_, settings_.drops, dt};
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
         for (std::size_t i = first + range.first; i < first + range.last; ++i) {
@@ -400,7 +440,7 @@ void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
             float* velocity = particle.velocity;
             float end[3];
             for (int axis = 0; axis < 3; ++axis) velocity[axis] += static_cast<float>(change[axis]);
-            slow_at_wall(around, particle.position, velocity);
+            slow_at_wall(around, liquids_.at(i), particle.position, velocity);
             for (int axis = 0; axis < 3; ++axis) {
                 std::fill_n(particle.affine[axis], 3, 0.0f);
                 end[axis] = particle.position[axis] + static_cast<float>(dt) * velocity[axis];

@@ -7,24 +7,18 @@
 #include "physics/definitions/fluid_definition.h"
 #include "physics/definitions/settings/fluid_settings.h"
 #include "physics/definitions/step_report.h"
+#include "physics/fluid/grid/faces.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/immersed_points.h"
 #include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/free_components.h"
+#include "physics/fluid/particles/mixture.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 #include "physics/fluid/pressure/viscosity.h"
 
 namespace embody::physics::fluid {
-
-struct FluidProperties {
-    double density = 998;        ///< kg/m³
-    double viscosity = 0.001;    ///< Pa s
-    double yield_stress = 0;     ///< Pa
-    double particle_volume = 0;  ///< m³
-    double surface_tension = 0;  ///< N/m
-};
 
 /// Result of a step of a fluid.
 struct FluidOutcome {
@@ -36,8 +30,8 @@ struct FluidOutcome {
     bool is_slowed = false;  ///< particles were faster than the parts allow
 };
 
-/// A liquid: particles that carry it and a grid on which its pressure and viscosity are solved, with the rigid bodies
-/// in the same equations. docs/physics/fluids.md.
+/// A liquid, or several: particles that carry it and a grid on which its pressure and viscosity are solved, with the
+/// rigid bodies in the same equations. docs/physics/fluids.md.
 class FluidSolver {
 public:
     /// Positions in the frame of world axes at `origin`.
@@ -60,19 +54,24 @@ public:
     Followed follow(std::span<FluidObstacle> obstacles, TaskPool& workers);
 
     [[nodiscard]] Vec3 origin() const { return origin_; }
-    [[nodiscard]] const FluidProperties& properties() const { return properties_; }
+    /// Of the first liquid; all have particles of its volume.
+    [[nodiscard]] const FluidProperties& properties() const { return liquids_.first(); }
+    [[nodiscard]] const Mixture& liquids() const { return liquids_; }
     [[nodiscard]] const FluidGrid& grid() const { return grid_; }
     [[nodiscard]] const std::vector<FluidParticle>& particles() const { return particles_; }
-    /// For particles of the same size.
-    void set_matter(const FluidProperties& matter) {
-        const double volume = properties_.particle_volume;
-        properties_ = matter;
-        properties_.particle_volume = volume;
+    /// All particles are of this liquid from now on; their volume stays.
+    void set_matter(FluidProperties matter) {
+        matter.particle_volume = properties().particle_volume;
+        liquids_ = matter;
     }
+    /// The particles with these ids are of this liquid from now on; their volume stays.
+    void set_matter(FluidIds ids, const FluidProperties& matter);
     /// Energies and momenta, of the particles as points.
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
     /// The speed that all but a few drops stay below, m/s; there is liquid.
     [[nodiscard]] double usual_speed(TaskPool& workers) const;
+    /// Whether heavier liquid lies above lighter one.
+    [[nodiscard]] bool is_top_heavy(Vec3 gravity) const { return liquids_.is_top_heavy(grid_, gravity); }
     /// Adds particles at rest; their ids follow all earlier ones.
     FluidIds add_particles(std::span<const Vec3f> positions);
     /// Removes the particles with these ids; returns them in the order of the ids.
@@ -95,14 +94,14 @@ private:
     void advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void fly(double dt, Vec3 change, TaskPool& workers);
     [[nodiscard]] float particle_fraction() const;  // of a cell's volume
-    [[nodiscard]] double particle_mass() const { return properties_.density * properties_.particle_volume; }
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
-    void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome, TaskPool& workers);
+    void shear(double dt, FluidOutcome& outcome, TaskPool& workers);
+    [[nodiscard]] Sticking sticking() const;
     void apply_surface_tension(double dt, TaskPool& workers);
     void spread_out(TaskPool& workers);
-    void move_particles(double dt, TaskPool& workers);
+    void move_particles(double dt, Vec3 gravity, TaskPool& workers);
     struct Push {
         Vec3 linear, angular;  // N s, N m s
     };
@@ -114,7 +113,7 @@ private:
 
     Vec3 origin_;
     FluidSettings settings_;  // of this step
-    FluidProperties properties_;
+    Mixture liquids_;
     FluidGrid grid_;
     FluidObstacles obstacles_;
     ImmersedPoints immersed_;

@@ -149,16 +149,19 @@ public:
     [[nodiscard]] std::vector<FluidHandle> fluids() const;
     /// Its definition, or the one last set; nullptr if stale.
     [[nodiscard]] const FluidDefinition* fluid(FluidHandle fluid) const;
-    /// Sets density, viscosity, yield stress, …; the places of its particles do not change, and cell_size must not.
+    /// Sets density, viscosity, yield stress, … of all its particles, whose places do not change; cell_size must not.
     Result<void> set_fluid(FluidHandle fluid, const FluidDefinition& definition);
     /// Adds particles of its particle_volume at these places (m), except those inside solids, at rest.
-    /// Their ids are consecutive; an error where there is room for none.
+    /// Their ids are consecutive; an error where there is room for none. They are of the definition's matter.
     Result<FluidIds> add_to_fluid(FluidHandle fluid, std::span<const Vec3> places);
+    /// The particles with these ids are of this liquid from now on. Where the liquids of a fluid are several, its
+    /// definition tells the matter of the first. Wakes the fluid.
+    Result<void> set_liquid(FluidHandle fluid, FluidIds ids, const LiquidMatter& matter);
     /// Calls `change` for each particle with one of these ids; those for which it returns false are removed. Wakes the
     /// fluid.
     Result<void> change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change);
     /// Moves the particles with these ids into another fluid of equal particles and cell_size; without one, into a new
-    /// fluid of the same matter. Both wake. Returns their ids there, in the order of the old ids.
+    /// fluid. They keep their liquids. Both wake. Returns their ids there, in the order of the old ids.
     Result<FluidPart> move_between_fluids(FluidHandle from, FluidIds ids, FluidHandle to = {});
     /// Its particles; empty if stale.
     [[nodiscard]] FluidParticles fluid_particles(FluidHandle fluid) const;

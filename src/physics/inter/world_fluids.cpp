@@ -63,6 +63,18 @@ Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definiti
     return wake(fluid);
 }
 
+Result<void> World::set_liquid(FluidHandle fluid, FluidIds ids, const LiquidMatter& matter) {
+    FluidRecord* record = state_->fluids.records.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    if (auto result = validate(matter); !result) return result;
+    record->solver->set_matter(ids, {.density = matter.density,
+                                     .viscosity = matter.viscosity,
+                                     .yield_stress = matter.yield_stress,
+                                     .surface_tension = matter.surface_tension});
+    read_particles(*record, *state_->workers);
+    return wake(fluid);
+}
+
 Result<FluidIds> World::add_to_fluid(FluidHandle fluid, std::span<const Vec3> places) {
     FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};

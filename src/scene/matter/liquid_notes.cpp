@@ -47,11 +47,10 @@ std::string note_of_cells(const LiquidDefinition& liquid, const FluidBody& body)
     const std::string budget = "particle_budget is " + std::to_string(liquid.particle_budget) + " and it would take " +
                                std::to_string(std::llround(particles)) + " particles";
     if (body.join() == FluidBody::Join::joined && body.cell_size() > FluidBody::max_cell_ratio * liquid.set_cell_size)
-        return cells + ": it is one with other liquid of its matter, which has these";
+        return cells + ": it is one with other liquid, which has these";
     const bool is_coarser = body.cell_size() > liquid.set_cell_size;
     if (body.join() == FluidBody::Join::joined || !are_too_many || !is_coarser) return {};
-    if (body.join() == FluidBody::Join::apart)
-        return cells + ", so that it does not see other liquid of its matter: " + budget;
+    if (body.join() == FluidBody::Join::apart) return cells + ", so that it does not see other liquid: " + budget;
     return cells + ": " + budget;
 }
 

@@ -12,6 +12,7 @@ namespace embody::scene {
 using physics::FluidDefinition;
 using physics::FluidHandle;
 using physics::FluidParticles;
+using physics::LiquidMatter;
 
 namespace {
 
@@ -19,10 +20,20 @@ namespace {
 // that the grid would have more cells do not use one fluid.
 constexpr double max_cells = 500'000, margin = 24;
 
-bool is_same_matter(const FluidDefinition& a, const FluidDefinition& b) {
-    return a.density == b.density && a.viscosity == b.viscosity && a.yield_stress == b.yield_stress &&
-           a.surface_tension == b.surface_tension && a.gravity_factor == b.gravity_factor &&
-           a.allow_sleep == b.allow_sleep;
+LiquidMatter matter_of(const FluidDefinition& fluid) {
+    return {fluid.density, fluid.viscosity, fluid.yield_stress, fluid.surface_tension};
+}
+
+void set_matter_of(FluidDefinition& fluid, const LiquidMatter& matter) {
+    fluid.density = matter.density;
+    fluid.viscosity = matter.viscosity;
+    fluid.yield_stress = matter.yield_stress;
+    fluid.surface_tension = matter.surface_tension;
+}
+
+// Whether one of them comes upon the other where it falls.
+bool are_above_each_other(const Bounds& a, const Bounds& b) {
+    return a.lower.x < b.upper.x && b.lower.x < a.upper.x && a.lower.z < b.upper.z && b.lower.z < a.upper.z;
 }
 
 bool are_within(double ratio, double limit) { return ratio <= limit && ratio >= 1 / limit; }
@@ -40,11 +51,16 @@ Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
         if (shared.fluid == wish.except) continue;
         const FluidDefinition& other = *world_.fluid(shared.fluid);
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
-        if (!is_same_matter(wish.matter, other) || particles.is_frozen) continue;
+        const bool is_moved_alike =
+            wish.matter.gravity_factor == other.gravity_factor && wish.matter.allow_sleep == other.allow_sleep;
+        if (!is_moved_alike || particles.is_frozen) continue;
         const auto is_set_alike = [&](const auto& part) {
             return part->set_cell_size > 0 && are_within(wish.set_cell_size / part->set_cell_size, max_ratio);
         };
-        if (!are_within(wish.matter.cell_size / other.cell_size, wish.ratio_limit) &&
+        const auto is_same = [&](const auto& part) { return part->matter == matter_of(wish.matter); };
+        const bool are_layers = wish.ratio_limit > 1 && std::ranges::none_of(shared.parts, is_same) &&
+                                are_above_each_other(particles.bounds, wish.bounds);
+        if (!are_within(wish.matter.cell_size / other.cell_size, wish.ratio_limit) && !are_layers &&
             std::ranges::none_of(shared.parts, is_set_alike))
             continue;
         Bounds both = particles.bounds;
@@ -64,10 +80,11 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     for (const Vec3 place : places) bounds.add(place);
     auto part = std::make_unique<Part>();
     Part* added = part.get();
+    part->matter = matter_of(matter);
     if (const SharedFluid* shared = to_join({matter, bounds})) {
-        const Result<physics::FluidIds> ids = world_.add_to_fluid(shared->fluid, places);
-        if (!ids.ok()) return ids.error();
         part->fluid = shared->fluid;
+        const Result<physics::FluidIds> ids = add_particles(*part, places);
+        if (!ids.ok()) return ids.error();
         part->ids = ids.value();
     } else {
         FluidDefinition definition = matter;
@@ -80,6 +97,13 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     }
     put(std::move(part));
     return added;
+}
+
+Result<physics::FluidIds> Liquids::add_particles(const Part& part, std::span<const Vec3> places) {
+    const Result<physics::FluidIds> ids = world_.add_to_fluid(part.fluid, places);
+    if (!ids.ok()) return ids.error();
+    if (Result<void> set = world_.set_liquid(part.fluid, ids.value(), part.matter); !set.ok()) return set.error();
+    return ids.value();
 }
 
 Result<Liquids::Part*> Liquids::add_again(const FluidDefinition& matter, std::span<const Vec3> places) {
@@ -122,7 +146,7 @@ Result<Liquids::Part*> Liquids::add_again(const FluidDefinition& matter, std::sp
     const auto first = static_cast<std::size_t>(std::ranges::find(is_there, true) - is_there.begin());
     if (wanted.size() <= count || first == is_there.size()) return added;
     const std::size_t missing = wanted.size() - count;
-    const Result<physics::FluidIds> more = world_.add_to_fluid(part.fluid, std::vector<Vec3>(missing, places[first]));
+    const Result<physics::FluidIds> more = add_particles(part, std::vector<Vec3>(missing, places[first]));
     if (!more.ok()) return added;
     part.ids.last = more.value().last;
     find(part.fluid)->version = 0;
@@ -202,17 +226,17 @@ Result<void> Liquids::hand_over(Part& part, FluidHandle to) {
 }
 
 Result<void> Liquids::set_matter(Part& part, const FluidDefinition& matter) {
-    // The other parts of its fluid stay unchanged.
-    if (find(part.fluid)->parts.size() > 1) {
-        if (Result<void> alone = hand_over(part, {}); !alone.ok()) return alone;
-    }
+    part.matter = matter_of(matter);
     FluidDefinition changed = *world_.fluid(part.fluid);
-    changed.density = matter.density;
-    changed.viscosity = matter.viscosity;
-    changed.yield_stress = matter.yield_stress;
-    changed.surface_tension = matter.surface_tension;
-    changed.allow_sleep = matter.allow_sleep;
-    if (Result<void> set = world_.set_fluid(part.fluid, changed); !set.ok()) return set;
+    if (changed.allow_sleep != matter.allow_sleep) {
+        // The other parts of its fluid stay unchanged.
+        if (find(part.fluid)->parts.size() > 1) {
+            if (Result<void> alone = hand_over(part, {}); !alone.ok()) return alone;
+        }
+        changed.allow_sleep = matter.allow_sleep;
+        if (Result<void> set = world_.set_fluid(part.fluid, changed); !set.ok()) return set;
+    }
+    if (Result<void> set = world_.set_liquid(part.fluid, part.ids, part.matter); !set.ok()) return set;
     return regroup(part);
 }
 
@@ -222,16 +246,18 @@ Result<void> Liquids::regroup(Part& part) {
     const bool is_alone = find(part.fluid)->parts.size() == 1;
     if (!is_alone && cells_of(particles.bounds, particles.cell_size) < max_cells) return {};
     const Bounds bounds = bounds_of(part);
-    const SharedFluid* other = to_join({*world_.fluid(part.fluid), bounds, 1, 0, part.fluid});
+    FluidDefinition wanted = *world_.fluid(part.fluid);
+    set_matter_of(wanted, part.matter);
+    const SharedFluid* other = to_join({wanted, bounds, 1, 0, part.fluid});
     if (is_alone && !other) return {};
     return hand_over(part, other ? other->fluid : FluidHandle{});
 }
 
 void Liquids::push(double dt) {
     for (const SharedFluid& shared : fluids_) {
-        const FluidDefinition& matter = *world_.fluid(shared.fluid);
-        const double particle = matter.density * matter.cell_size * matter.cell_size * matter.cell_size / 8;
+        const double cell = world_.fluid(shared.fluid)->cell_size;
         for (const auto& part : shared.parts) {
+            const double particle = part->matter.density * cell * cell * cell / 8;
             const std::size_t count = part->force == Vec3{} ? 0 : particles_of(*part).size();
             if (count == 0 || world_.fluid_particles(shared.fluid).is_frozen) continue;
             const Vec3 change = dt / (particle * static_cast<double>(count)) * part->force;

@@ -9,12 +9,12 @@
 
 namespace embody::scene {
 
-/// Bodies of liquid in the world's fluids: bodies of the same matter close to each other are in one fluid of the
-/// physics, so that they mix. Liquids of different matter do not interact (docs/physics/fluids.md, "Entities").
+/// Bodies of liquid in the world's fluids: bodies close to each other are in one fluid of the physics, so that those of
+/// the same matter mix and others lie in layers (docs/physics/fluids.md, "Entities").
 class Liquids {
 public:
     /// A solver has one cell size: bodies of liquid use one fluid if their own cell sizes differ by no more than this
-    /// factor.
+    /// factor, or are of different matter and lie above each other.
     static constexpr double max_ratio = 1.6;
 
     /// `world` outlives this.
@@ -25,8 +25,9 @@ public:
         physics::FluidHandle fluid;
         physics::FluidIds ids;
         std::vector<std::uint32_t> places;  ///< indices, see particles_of
-        double set_cell_size = 0;           ///< m, told by hand; 0: none. The fluid's may be larger
-        Vec3 force;                         ///< constant, N, distributed over its particles; push() applies it
+        physics::LiquidMatter matter;
+        double set_cell_size = 0;  ///< m, told by hand; 0: none. The fluid's may be larger
+        Vec3 force;                ///< constant, N, distributed over its particles; push() applies it
     };
     /// Cell size for filling a body of this matter within these bounds: that of the fluid that it would join, else its
     /// own. It joins one of about its own cells, or one of whose bodies was told about the same by hand.
@@ -69,6 +70,8 @@ private:
     [[nodiscard]] SharedFluid* to_join(const Wish& wish);
     [[nodiscard]] std::vector<SharedFluid>::iterator find(physics::FluidHandle fluid);
     void locate(SharedFluid& shared);
+    /// Particles of the part's matter in its fluid.
+    Result<physics::FluidIds> add_particles(const Part& part, std::span<const Vec3> places);
     [[nodiscard]] Bounds bounds_of(const Part& part);
     Result<void> hand_over(Part& part, physics::FluidHandle to);
     std::unique_ptr<Part> take(Part& part);

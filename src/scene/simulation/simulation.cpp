@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <unordered_map>
 #include <utility>
 
 #include "attributes/surfaces.h"
+#include "attributes/to_physics.h"
 #include "scene/document/document_field.h"
 #include "scene/matter/fluid_body.h"
 #include "scene/matter/liquid_notes.h"
@@ -43,9 +45,29 @@ void add_notes_of_liquids(const std::vector<std::pair<std::string, const FluidBo
             const FluidBody &one = *liquids[a].second, &other = *liquids[b].second;
             if (one.fluid() == other.fluid() || !are_overlapping(one, other)) continue;
             notes.push_back(liquids[b].first + " is in " + liquids[a].first +
-                            ": liquids of other matter or other cells do not see each other.");
+                            ": liquids of other cells do not see each other.");
         }
     }
+}
+
+// Liquids of unlike densities share one grid, whose cells are those of the first: the one with the coarsest cells, as
+// finer ones could be more than the budget of the others allows.
+void sort_layers(EntityAttributes& acting, std::vector<const Entity*>& liquids) {
+    struct Cells {
+        const Entity* entity;
+        double size, density;
+    };
+    std::vector<Cells> cells;
+    for (const Entity* entity : liquids) {
+        const Result<AttributeSet> set = acting.acting(*entity);
+        const physics::FluidDefinition fluid =
+            set.ok() ? attributes::fluid_from_attributes(set.value()) : physics::FluidDefinition{};
+        cells.push_back({entity, fluid.cell_size, fluid.density});
+    }
+    const auto is_alike = [&](const Cells& other) { return other.density == cells.front().density; };
+    if (std::ranges::all_of(cells, is_alike)) return;
+    std::ranges::stable_sort(cells, std::greater{}, &Cells::size);
+    std::ranges::transform(cells, liquids.begin(), &Cells::entity);
 }
 
 Error not_in_world(EntityIndex entity) {
@@ -81,14 +103,19 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
 
     // Entities are made in the document's order, so that the same document makes the same world; liquids last, since
     // they fill the space that the others leave free.
-    for (const bool liquids : {false, true}) {
-        for (const Entity& entity : document.entities) {
-            state.templates[entity.index] = entity;
-            if (state.waiting.contains(entity.index)) continue;
-            if (state.definitions.attributes.is_liquid(entity) != liquids) continue;
-            if (Result<void> added = state.add(entity); !added.ok()) return added.error();
+    std::vector<const Entity*> liquids;
+    for (const Entity& entity : document.entities) {
+        state.templates[entity.index] = entity;
+        if (state.waiting.contains(entity.index)) continue;
+        if (state.definitions.attributes.is_liquid(entity)) {
+            liquids.push_back(&entity);
+        } else if (Result<void> added = state.add(entity); !added.ok()) {
+            return added.error();
         }
     }
+    sort_layers(state.definitions.attributes, liquids);
+    for (const Entity* liquid : liquids)
+        if (Result<void> added = state.add(*liquid); !added.ok()) return added.error();
     if (Result<void> held = state.fasten_all({}); !held.ok()) return held.error();
     for (const SceneJoint& joint : document.joints)
         if (Result<void> added = state.add_joint(joint); !added.ok()) return added.error();

@@ -126,14 +126,15 @@ TEST(CrossingGuard, HoldsSheetsApartWhateverTheirMoves) {
         for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
             ThinSurface surface{.nodes = &nodes[i], .triangles = triangles[i], .edges = layers[i].edges()};
             surface.radius = 0.001;
+            surface.stars = &layers[i].stars();
             surface.edge_length = layers[i].edge_length();
             members.push_back(
                 {surface, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(compliance.size()), {}, {}});
             compliance.insert(compliance.end(), nodes[i].inverse_mass.begin(), nodes[i].inverse_mass.end());
         }
-        const std::array<CrossingGuard::Pair, 3> pairs{CrossingGuard::Pair{0, 0, layers.data(), {}, {}},
-                                                       CrossingGuard::Pair{0, 1, nullptr, {}, {}},
-                                                       CrossingGuard::Pair{1, 1, &layers[1], {}, {}}};
+        const std::array<CrossingGuard::Pair, 3> pairs{CrossingGuard::Pair{0, 0, layers.data(), {}},
+                                                       CrossingGuard::Pair{0, 1, nullptr, {}},
+                                                       CrossingGuard::Pair{1, 1, &layers[1], {}}};
         CrossingGuard guard(members, pairs, workers);
         std::vector<Vec3> moves(compliance.size());
         Vec3 momentum, kept;

@@ -18,26 +18,17 @@
 #include "physics/deformable/contact/node_contacts.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/substep.h"
-#include "physics/deformable/contact/thin_pairs.h"
 #include "physics/deformable/contact/tie_springs.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/contact/touched_body.h"
 #include "physics/deformable/rope/rope_segment.h"
+#include "physics/deformable/test_nodes.h"
 
 namespace embody::physics::deformable {
 namespace {
 
 Vec3 any_vector(Random& random, double reach) {
     return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
-}
-
-Nodes nodes_at(const std::vector<Vec3>& places, double mass = 1) {
-    Nodes nodes;
-    nodes.position = places;
-    nodes.velocity = nodes.mean_velocity = std::vector<Vec3>(places.size());
-    nodes.mass = std::vector<double>(places.size(), mass);
-    nodes.inverse_mass = std::vector<double>(places.size(), 1 / mass);
-    return nodes;
 }
 
 TEST(BoxGrid, WithoutBoxesVisitsNone) {
@@ -201,77 +192,6 @@ TEST(NodeContacts, AreWithWhatANodeMayReach) {
     EXPECT_EQ(found, (std::vector<std::uint32_t>{0, 2}));  // near, and fast enough
     bodies[0].path_velocity = {0, 3, 0};
     EXPECT_NEAR(displacement_of(bodies[0], 1.0 / 60), 0.05, 0.01);
-}
-
-// Sheets that cross: candidates hold every pair that is near, and nearest points are so far apart as a trial finds.
-TEST(ThinPairs, CandidatesHoldAllThatIsNear) {
-    Random random(5);
-    TaskPool workers(1);
-    const DeformableDefinition definition = cloth_rectangle(0.4, 0.3, 0.1);
-    const auto& triangles = std::get<Cloth>(definition.matter).triangles;
-    std::set<std::array<std::uint32_t, 2>> unique;
-    for (const auto& t : triangles) {
-        for (std::size_t k = 0; k < 3; ++k)
-            unique.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-    }
-    const std::vector<std::array<std::uint32_t, 2>> edges(unique.begin(), unique.end());
-    constexpr double radius = 0.01;
-    for (int trial = 0; trial < 10; ++trial) {
-        Nodes below = nodes_at(definition.nodes), above = nodes_at(definition.nodes);
-        const Vec3 displacement{random.between(-0.1, 0.1), 0.015, random.between(-0.1, 0.1)};
-        for (Vec3& p : above.position) p += displacement + Vec3{0, random.between(-0.01, 0.03), 0};
-        const ThinSurface a{&below, triangles, edges, radius, 0.1}, b{&above, triangles, edges, radius, 0.1};
-        std::vector<ThinCandidate> candidates;
-        find_thin_candidates(a, b, 1.0 / 60, 9.81, workers, candidates);
-        std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
-        int nearer = 0;
-        for (const ThinCandidate& candidate : candidates) {
-            if (candidate.kind == ThinFeature::node_on_triangle && candidate.is_swapped) {
-                listed.insert({candidate.first, candidate.second});
-            }
-            ThinPoints points;
-            if (!find_points(a, b, candidate, points)) continue;
-            // The weighted sum is the way, and no other weights of the same features give a shorter one.
-            const Nodes &first = candidate.is_swapped ? above : below, &second = candidate.is_swapped ? below : above;
-            const auto sum = [&](const std::array<double, 4>& weight) {
-                Vec3 total;
-                for (int i = 0; i < points.count; ++i) {
-                    const auto k = static_cast<std::size_t>(i);
-                    total += (i < points.count_first ? first : second).position[points.node[k]] * weight[k];
-                }
-                return total;
-            };
-            EXPECT_LT(length(sum(points.weight) - points.away), 1e-9);
-            double one = 0, other = 0;
-            for (int i = 0; i < points.count; ++i) {
-                (i < points.count_first ? one : other) += points.weight[static_cast<std::size_t>(i)];
-            }
-            EXPECT_NEAR(one, 1, 1e-9);
-            EXPECT_NEAR(other, -1, 1e-9);
-            nearer += length(points.away) < 2 * radius;
-        }
-        EXPECT_GT(nearer, 0);
-        EXPECT_TRUE(will_touch(a, b, candidates, 1.0 / 60, 9.81));
-        // Nodes of the upper one straight over a triangle of the lower one, nearer than both radii.
-        for (std::uint32_t node = 0; node < above.size(); ++node) {
-            const Vec3 p = above.position[node];
-            if (p.y > 2 * radius) continue;
-            for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-                const Vec3 o = below.position[triangles[t][0]], u = below.position[triangles[t][1]] - o,
-                           v = below.position[triangles[t][2]] - o, n = cross(u, v);
-                const double s = dot(cross(p - o, v), n) / length_squared(n),
-                             r = dot(cross(u, p - o), n) / length_squared(n);
-                if (s < 0.01 || r < 0.01 || s + r > 0.99) continue;
-                EXPECT_TRUE(listed.contains({node, t}));
-            }
-        }
-        // Far apart there are none.
-        for (Vec3& p : above.position) p.y += 3;
-        candidates.clear();
-        find_thin_candidates(a, b, 1.0 / 60, 9.81, workers, candidates);
-        EXPECT_TRUE(candidates.empty());
-        EXPECT_FALSE(will_touch(a, b, candidates, 1.0 / 60, 9.81));
-    }
 }
 
 TEST(TouchSprings, UnitMovesAreThoseOfARigidBody) {

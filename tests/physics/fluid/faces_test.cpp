@@ -177,7 +177,8 @@ TEST(FluidFaces, ShutFacesMoveWithTheirObstacle) {
         FluidGrid& grid = block.grid;
         block.set_velocity([](Vec3) { return Vec3{5, 5, 5}; });
         for (auto& known : grid.known) std::ranges::fill(known, 1);
-        follow_obstacles(grid, block.obstacles, sticking, block.workers);
+        follow_obstacles(
+            grid, block.obstacles, [sticking](int, int) { return sticking; }, block.workers);
         // Along the normal as fast as the obstacle, along it as the liquid where it slides; mirrored where it sticks.
         const int inside = block.index_at({0.45, -0.05, 0.45});
         EXPECT_NEAR(grid.velocity[1][inside], sticking == 0 ? 0.7 : 2 * 0.7 - 5, 1e-4);

@@ -40,7 +40,7 @@ struct Immersion {
     }
     void find_conductance() {
         immersed.measure(time, block.grid);
-        immersed.find_conductance(time, {rho, 0.001}, particle, block.grid);
+        immersed.find_conductance(time, FluidProperties{.density = rho, .particle_volume = particle / rho}, block.grid);
         system.build(block.grid, {}, block.workers);
     }
     // Lets a pressure with this gradient act, N s/m³.

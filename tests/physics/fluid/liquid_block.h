@@ -67,7 +67,7 @@ struct LiquidBlock {
             const float* p = particles[i].position;
             places.push_back({p[0], p[1], p[2]});
         }
-        particles_to_grid(grid, particles, places, particle_fraction, workers);
+        particles_to_grid(grid, particles, places, {particle_fraction, liquids}, workers);
     }
     /// Centre of a face, m.
     [[nodiscard]] Vec3 face_center(int axis, const Cell& c) const {
@@ -119,6 +119,7 @@ struct LiquidBlock {
     FluidObstacles obstacles;
     std::vector<FluidParticle> particles;
     std::vector<std::array<float, 3>> places;
+    Mixture liquids{FluidProperties{.density = 1000, .particle_volume = 1e-6}};
 };
 
 }  // namespace embody::physics::fluid

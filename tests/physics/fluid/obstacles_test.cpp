@@ -416,7 +416,8 @@ TEST(SmallBody, TakesFromTheLiquidWhatItIsGiven) {
         const Vec3 before = moving.linear_velocity;
         const Vec3 liquid = water.face_momenta().linear;
         constexpr double particle_mass = 1000 * h * h * h / 8;
-        drag_small_body(water.grid, 1000, 0.001, particle_mass, 0.01, moving);
+        const FluidProperties matter{.density = 1000, .particle_volume = h * h * h / 8};
+        drag_small_body(water.grid, matter, 0.01, moving);
         const Vec3 given = water.face_momenta().linear - liquid;
         EXPECT_LT(length(moving.linear_velocity), length(before));
         EXPECT_GT(dot(moving.linear_velocity, before), 0);
@@ -449,7 +450,8 @@ TEST(WallFriction, SlowsTheLayerAtAWallAndPullsAtIt) {
         water.set_velocity([](Vec3) { return Vec3{2, 0, 0}; });
         const double before = water.face_momenta().linear.x;
         constexpr double particle_mass = 1000 * h * h * h / 8;
-        apply_wall_friction(water.grid, water.obstacles, 1000, 0.001, particle_mass, 0.01, water.workers);
+        const FluidProperties matter{.density = 1000, .particle_volume = h * h * h / 8};
+        apply_wall_friction(water.grid, water.obstacles, matter, 0.01, water.workers);
         const double lost = (before - water.face_momenta().linear.x) * particle_mass;
         const float first = water.grid.velocity[0][water.index_at({0.6, 0.05, 0.6})];
         EXPECT_EQ(water.grid.velocity[0][water.index_at({0.6, 0.25, 0.6})], 2);

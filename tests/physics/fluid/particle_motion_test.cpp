@@ -127,7 +127,7 @@ struct Floor {
     FluidProperties liquid{.density = 1000, .viscosity = 0, .particle_volume = h * h * h / 8};
     Vec3 slowed(Vec3 place, Vec3 velocity) const {
         FluidParticle drop = at(place, velocity);
-        slow_at_wall({block.grid, block.obstacles, liquid, {}, dt}, drop.position, drop.velocity);
+        slow_at_wall({block.grid, block.obstacles, {}, dt}, liquid, drop.position, drop.velocity);
         return velocity_of(drop);
     }
 };
@@ -175,7 +175,8 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
     PressureSystem system;
     system.build(block.grid, {}, block.workers);
     FreeComponents components;
-    components.begin(block.grid, system, block.obstacles, {}, block.particles, {.all = true});
+    const Mixture liquid(FluidProperties{.density = 1, .particle_volume = 1});
+    components.begin(block.grid, system, block.obstacles, {}, block.particles, {.liquids = liquid, .all = true});
     const auto momenta = [&](bool is_first) {
         Vec3 place, linear, angular;
         double count = 0;
@@ -198,7 +199,7 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
         for (int a = 0; a < 3; ++a) p.velocity[a] += static_cast<float>(push[a]);
     }
     const Vec3 gravity{0, -0.1, 0};
-    components.end(gravity, block.obstacles, {}, 1, block.particles);
+    components.end(gravity, block.obstacles, {}, liquid, block.particles);
     const auto first_after = momenta(true), second_after = momenta(false);
     const double count = static_cast<double>(block.particles.size()) / 2;
     EXPECT_LT(length(first_after.first - first.first - gravity * count), 1e-3 * count);
@@ -212,9 +213,11 @@ TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
     PressureSystem system;
     system.build(floor.block.grid, {}, floor.block.workers);
     FreeComponents components;
-    components.begin(floor.block.grid, system, floor.block.obstacles, {}, floor.block.particles, {.all = true});
+    const Mixture liquid(floor.liquid);
+    components.begin(floor.block.grid, system, floor.block.obstacles, {}, floor.block.particles,
+                     {.liquids = liquid, .all = true});
     for (FluidParticle& p : floor.block.particles) p.velocity[0] = 3;
-    components.end({}, floor.block.obstacles, {}, 1, floor.block.particles);
+    components.end({}, floor.block.obstacles, {}, liquid, floor.block.particles);
     for (const FluidParticle& p : floor.block.particles) EXPECT_EQ(p.velocity[0], 3);
 }
 

@@ -46,7 +46,7 @@ struct FreeBlock : LiquidBlock {
 };
 
 // Iterations of a viscous step.
-int solve(const Viscosity& liquid, double dt, LiquidBlock& block) {
+int solve(const FluidProperties& liquid, double dt, LiquidBlock& block) {
     ViscositySystem system;
     system.begin(liquid, dt, settings, block.grid, block.obstacles);
     return system.solve(liquid, dt, block.grid, block.obstacles);

@@ -8,7 +8,7 @@ namespace embody::physics {
 /// Sheets and how their own layers are kept apart (src/physics/deformable/cloth, docs/physics/cloth.md).
 struct ClothSettings {
     /// Maximum linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
-    int max_solves = 4;
+    int max_solves = 8;
     /// Further solves in a substep with contacts of what would pass through each other. Test: Settings.AreNoticed.
     int max_meeting_solves = 4;
     /// Residual at which a solve ends, over that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.

@@ -51,6 +51,7 @@ ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triang
         }
     }
     edge_length_ /= static_cast<double>(edges_.size());
+    stars_ = NodeStars(nodes.size(), edges_, triangles_);
 }
 
 // Features that lay that close on the same side when the sheet was made belong together.

@@ -42,6 +42,7 @@ public:
     [[nodiscard]] double edge_length() const { return edge_length_; }
     /// Each once.
     [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return edges_; }
+    [[nodiscard]] const NodeStars& stars() const { return stars_; }
 
 private:
     struct Search;
@@ -65,6 +66,7 @@ private:
 
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
+    NodeStars stars_;
     std::vector<Vec3> rest_, rest_normal_;  // of nodes, as it was made
     double edge_length_ = 0;                // mean, m
     PatchTree patches_;

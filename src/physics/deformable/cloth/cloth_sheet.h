@@ -30,6 +30,7 @@ public:
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] ClothLayers& layers() { return *layers_; }
+    [[nodiscard]] const ClothLayers& layers() const { return *layers_; }
     /// Where it may touch itself in the part, by the motion of its nodes.
     [[nodiscard]] std::vector<ThinCandidate> near_layers(const Substep& substep, TaskPool& workers);
     /// Stiffness of each node alone, N/m, since begin().

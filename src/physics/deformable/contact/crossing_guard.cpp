@@ -21,49 +21,31 @@ bool has_common(std::span<const std::uint32_t> a, std::span<const std::uint32_t>
     return std::ranges::any_of(a, [&](std::uint32_t node) { return std::ranges::find(b, node) != b.end(); });
 }
 
-bool has_any(const std::vector<bool>& marked, std::span<const std::uint32_t> nodes) {
-    return !marked.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return marked[node]; });
-}
-
 }  // namespace
-
-const CrossingGuard::Stars& CrossingGuard::stars_of(std::uint32_t member) {
-    stars_.resize(members_.size());
-    std::optional<Stars>& stars = stars_[member];
-    if (stars) return *stars;
-    const ThinSurface& surface = members_[member].surface;
-    stars.emplace();
-    stars->edges.resize(surface.nodes->size());
-    stars->triangles.resize(surface.nodes->size());
-    for (std::uint32_t e = 0; e < surface.edges.size(); ++e) {
-        for (const std::uint32_t node : surface.edges[e]) stars->edges[node].push_back(e);
-    }
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        for (const std::uint32_t node : surface.triangles[t]) stars->triangles[node].push_back(t);
-    }
-    return *stars;
-}
 
 // Whether the surfaces around the two pass through each other already: what began so, or was put there, may part.
 bool CrossingGuard::is_tangled(std::uint32_t first, std::span<const std::uint32_t> of_first, std::uint32_t second,
-                               std::span<const std::uint32_t> of_second) {
+                               std::span<const std::uint32_t> of_second) const {
     const auto passes_through = [&](std::uint32_t one, std::span<const std::uint32_t> of_one, std::uint32_t other,
                                     std::span<const std::uint32_t> of_other) {
         const ThinSurface &edges = members_[one].surface, &triangles = members_[other].surface;
+        if (triangles.stars == nullptr) return false;
         const std::vector<Vec3>&x = edges.nodes->position, &y = triangles.nodes->position;
-        for (const std::uint32_t node : of_one) {
-            for (const std::uint32_t e : stars_of(one).edges[node]) {
-                const Edge& edge = edges.edges[e];
-                for (const std::uint32_t near : of_other) {
-                    for (const std::uint32_t t : stars_of(other).triangles[near]) {
-                        const auto& [a, b, c] = triangles.triangles[t];
-                        if (one == other && has_common(edge, triangles.triangles[t])) continue;
-                        if (passes(x[edge[0]], x[edge[1]], y[a], y[b], y[c])) return true;
-                    }
-                }
-            }
-        }
-        return false;
+        const auto passes_near = [&](std::uint32_t e) {
+            const auto& [p, q] = edges.edges[e];
+            return std::ranges::any_of(of_other, [&](std::uint32_t near) {
+                return std::ranges::any_of(triangles.stars->triangles(near), [&](std::uint32_t t) {
+                    const auto& [a, b, c] = triangles.triangles[t];
+                    if (one == other && has_common(edges.edges[e], triangles.triangles[t])) return false;
+                    return passes(x[p], x[q], y[a], y[b], y[c]);
+                });
+            });
+        };
+        return std::ranges::any_of(of_one, [&](std::uint32_t node) {
+            if (edges.stars != nullptr) return std::ranges::any_of(edges.stars->edges(node), passes_near);
+            // Segments of a rope, by number.
+            return (node > 0 && passes_near(node - 1)) || (node < edges.edges.size() && passes_near(node));
+        });
     };
     return passes_through(first, of_first, second, of_second) || passes_through(second, of_second, first, of_first);
 }
@@ -77,7 +59,7 @@ std::vector<ThinCandidate> CrossingGuard::candidates_of(const Pair& pair, std::s
     return candidates;
 }
 
-std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) {
+std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) const {
     std::vector<ThinMeeting> meetings;
     for (std::uint32_t p = 0; p < pairs_.size(); ++p) {
         const Pair& pair = pairs_[p];
@@ -113,8 +95,7 @@ std::vector<ThinMeeting> CrossingGuard::find(std::span<const Vec3> moves) {
             const std::span<const std::uint32_t> nodes(points.node.data(), static_cast<std::size_t>(points.count));
             const auto of_first = nodes.first(static_cast<std::size_t>(points.count_first));
             const auto of_second = nodes.subspan(of_first.size());
-            if (has_any(candidate.is_swapped ? pair.held_b : pair.held_a, of_first) ||
-                has_any(candidate.is_swapped ? pair.held_a : pair.held_b, of_second) ||
+            if (pair.held.hold(candidate.is_swapped, of_first, of_second) ||
                 is_tangled(first, of_first, second, of_second))
                 continue;
             points.weight = impact->weight;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "physics/deformable/cloth/cloth_layers.h"
 #include "physics/deformable/contact/pair_springs.h"
 #include "physics/deformable/contact/time_of_impact.h"
@@ -18,37 +16,30 @@ public:
     struct Pair {
         std::uint32_t a = 0, b = 0;
         ClothLayers* layers = nullptr;
-        std::vector<bool> held_a, held_b;  ///< nodes that are held at the other, which may meet; none: empty
+        HeldNodes held;  ///< features with these may meet
     };
     /// As its substep begins; these outlive it.
     CrossingGuard(std::span<const ThinMember> members, std::span<const Pair> pairs, TaskPool& workers)
         : members_(members), pairs_(pairs), workers_(&workers) {}
 
     /// Features that would meet by these moves of the nodes of all members, m, in a fixed order.
-    [[nodiscard]] std::vector<ThinMeeting> find(std::span<const Vec3> moves);
+    [[nodiscard]] std::vector<ThinMeeting> find(std::span<const Vec3> moves) const;
     /// Changes the moves so that none meet: those that would move together (X. Provot, "Collision and self-collision
     /// handling in cloth model dedicated to design garments", 1997). Momentum is kept. `compliance`: of the nodes,
     /// 1/kg; 0: those stay where they are, and what they would meet.
     void hold(std::span<const double> compliance, std::span<Vec3> moves);
 
 private:
-    using Edge = std::array<std::uint32_t, 2>;
-    // Edges and triangles around each node of a member.
-    struct Stars {
-        std::vector<std::vector<std::uint32_t>> edges, triangles;
-    };
     [[nodiscard]] std::vector<ThinCandidate> candidates_of(const Pair& pair, std::span<const Vec3> moves) const;
     [[nodiscard]] std::span<const Vec3> part(std::span<const Vec3> moves, std::uint32_t member) const {
         return moves.subspan(members_[member].first, members_[member].surface.nodes->size());
     }
-    [[nodiscard]] const Stars& stars_of(std::uint32_t member);
     [[nodiscard]] bool is_tangled(std::uint32_t first, std::span<const std::uint32_t> of_first, std::uint32_t second,
-                                  std::span<const std::uint32_t> of_second);
+                                  std::span<const std::uint32_t> of_second) const;
 
     std::span<const ThinMember> members_;
     std::span<const Pair> pairs_;
     TaskPool* workers_;
-    std::vector<std::optional<Stars>> stars_;  // by member, made when needed
 };
 
 }  // namespace embody::physics::deformable

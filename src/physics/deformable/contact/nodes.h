@@ -34,6 +34,10 @@ struct Nodes {
     std::vector<Vec3> flow_impulse;    ///< that `flow` has had on the nodes in the step, N s; as many as `flow`
 
     [[nodiscard]] std::size_t size() const { return position.size(); }
+    /// Where it comes in some seconds with its mean velocity.
+    [[nodiscard]] Vec3 ahead(std::size_t node, double seconds) const {
+        return position[node] + seconds * mean_velocity[node];
+    }
     [[nodiscard]] Vec3 force_on(std::size_t node) const { return force.empty() ? Vec3{} : force[node]; }
 };
 

@@ -8,6 +8,29 @@
 
 namespace embody::physics::deformable {
 
+bool HeldNodes::hold(bool is_swapped, std::span<const std::uint32_t> first,
+                     std::span<const std::uint32_t> second) const {
+    const auto has_any = [](const std::vector<bool>& marked, std::span<const std::uint32_t> nodes) {
+        return !marked.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return marked[node]; });
+    };
+    if (are_of_one) return has_any(of_a, first) && has_any(of_a, second);
+    return has_any(is_swapped ? of_b : of_a, first) || has_any(is_swapped ? of_a : of_b, second);
+}
+
+void leave_out_held(const ThinSurface& a, const ThinSurface& b, const HeldNodes& held,
+                    std::vector<ThinCandidate>& candidates) {
+    if (held.of_a.empty() && held.of_b.empty()) return;
+    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
+        const ThinSurface &one = candidate.is_swapped ? b : a, &two = candidate.is_swapped ? a : b;
+        using Nodes = std::span<const std::uint32_t>;
+        const Nodes first = candidate.kind == ThinFeature::edge_on_edge ? Nodes(one.edges[candidate.first])
+                                                                        : Nodes(&candidate.first, 1);
+        const Nodes second = candidate.kind == ThinFeature::node_on_triangle ? Nodes(two.triangles[candidate.second])
+                                                                             : Nodes(two.edges[candidate.second]);
+        return held.hold(candidate.is_swapped, first, second);
+    });
+}
+
 struct PairSprings::Found {
     ThinCandidate candidate;
     ThinPoints points;
@@ -44,16 +67,32 @@ struct PairSprings::Search {
 };
 
 bool PairSprings::Search::place(const ThinCandidate& candidate, Found& found) const {
-    found = {.candidate = candidate, .points = {}, .normal = {}};
-    if (!find_points(a.surface, b.surface, candidate, found.points)) return false;
     constexpr double same_place = 1e-9;  // m: features that are closer have no direction
-    found.distance = length(found.points.away);
-    if (found.distance > same_place)
-        found.normal = found.points.away / found.distance;
-    else if (candidate.kind == ThinFeature::node_on_triangle)
-        found.normal = side_of(candidate);
-    else
-        return false;
+    const auto find = [&](double ahead) {
+        found = {.candidate = candidate, .points = {}, .normal = {}};
+        return find_points(a.surface, b.surface, candidate, ahead, found.points) &&
+               are_nearest(a.surface, b.surface, candidate, ahead, found.points);
+    };
+    // As they lie at the end if they go on, unless they pass through each other on that way.
+    if (!find(start.h)) return false;
+    found.normal = normalized(found.points.away);
+    found.points.away = {};
+    for (int k = 0; k < found.points.count; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        found.points.away +=
+            found.points.weight[at] * member_of(found, k).surface.nodes->position[found.points.node[at]];
+    }
+    found.distance = dot(found.points.away, found.normal);
+    if (!(found.distance > same_place)) {
+        if (!find(0)) return false;
+        found.distance = length(found.points.away);
+        if (found.distance > same_place)
+            found.normal = found.points.away / found.distance;
+        else if (candidate.kind == ThinFeature::node_on_triangle)
+            found.normal = side_of(candidate);
+        else
+            return false;
+    }
     recall(found);
     return is_near(found);
 }
@@ -140,7 +179,7 @@ void PairSprings::Search::add_known(std::vector<Found>& kept) const {
     for (const ThinContact& known : memory) {
         if (!(known.push > 0) || std::ranges::binary_search(found, features(known))) continue;
         const ThinCandidate candidate{known.kind, known.is_swapped, known.first, known.second};
-        Found own{.candidate = candidate, .points = nearest_points(a.surface, b.surface, candidate), .normal = {}};
+        Found own{.candidate = candidate, .points = nearest_points(a.surface, b.surface, candidate, 0), .normal = {}};
         own.distance = length(own.points.away);
         own.normal = normalized(own.points.away);
         own.memory = &known;
@@ -194,6 +233,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     if (gap < 0) spring.returned = std::min(-settings.recovery_fraction * gap, settings.recovery_speed * h);
     spring.gap = gap < 0 ? -spring.returned : gap;
     spring.friction = search.friction;
+    spring.predicts_slip = true;
     if (found.memory != nullptr) {
         spring.pull = found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);

@@ -38,12 +38,24 @@ struct ThinMember {
     std::vector<double> load;           ///< kg a node: of bodies that lie on it
     std::span<const double> stiffness;  ///< N/m a node, of it alone
 };
+/// Nodes of two members that are held at the other, by ties or by one body; of a sheet with itself those that ties
+/// hold, in `of_a`. None: empty.
+struct HeldNodes {
+    std::vector<bool> of_a, of_b;
+    bool are_of_one = false;  ///< of a sheet with itself
+    /// Whether features with these nodes cannot be parted: one has such a node, of a sheet with itself both have.
+    [[nodiscard]] bool hold(bool is_swapped, std::span<const std::uint32_t> first,
+                            std::span<const std::uint32_t> second) const;
+};
+/// Takes out the candidates of two members that cannot be parted.
+void leave_out_held(const ThinSurface& a, const ThinSurface& b, const HeldNodes& held,
+                    std::vector<ThinCandidate>& candidates);
 /// Two members, by index, the lower slot first, with their candidates; or a sheet with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;
     std::vector<ThinCandidate> candidates;
-    std::vector<bool> held_a, held_b;  ///< nodes that are held at the other, by ties or one body; none: empty
+    HeldNodes held;
 };
 
 /// Two features that would meet within a substep.

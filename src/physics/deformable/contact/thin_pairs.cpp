@@ -117,42 +117,94 @@ void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double tim
     find_swept_candidates(a, moves_of(a), b, moves_of(b), reach, workers, candidates);
 }
 
-ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate) {
+ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead) {
     const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
-    const std::vector<Vec3>&x = first.nodes->position, &y = second.nodes->position;
+    const auto x = [&](std::uint32_t node) { return first.nodes->ahead(node, ahead); };
+    const auto y = [&](std::uint32_t node) { return second.nodes->ahead(node, ahead); };
     ThinPoints points;
     if (candidate.kind == ThinFeature::node_on_triangle) {
         const auto [p, q, r] = second.triangles[candidate.second];
-        const auto w = nearest_weights(x[candidate.first], y[p], y[q], y[r]);
+        const auto w = nearest_weights(x(candidate.first), y(p), y(q), y(r));
         points = {{candidate.first, p, q, r}, {1, -w[0], -w[1], -w[2]}, 1, 4, {}};
     } else if (candidate.kind == ThinFeature::node_on_edge) {
         const auto [p, q] = second.edges[candidate.second];
-        const double t = nearest_along(x[candidate.first], y[p], y[q]);
+        const double t = nearest_along(x(candidate.first), y(p), y(q));
         points = {{candidate.first, p, q, 0}, {1, t - 1, -t, 0}, 1, 3, {}};
     } else {
         const auto [p, q] = first.edges[candidate.first];
         const auto [r, s] = second.edges[candidate.second];
-        const auto [t, u] = nearest_between(x[p], x[q], y[r], y[s]);
+        const auto [t, u] = nearest_between(x(p), x(q), y(r), y(s));
         points = {{p, q, r, s}, {1 - t, t, u - 1, -u}, 2, 4, {}};
     }
     for (int k = 0; k < points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        points.away += points.weight[at] * (k < points.count_first ? x : y)[points.node[at]];
+        points.away += points.weight[at] * (k < points.count_first ? x(points.node[at]) : y(points.node[at]));
     }
     return points;
 }
 
-bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points) {
+bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead,
+                 ThinPoints& points) {
     if (candidate.kind == ThinFeature::edge_on_edge) {
         const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
-        const std::vector<Vec3>&x = first.nodes->position, &y = second.nodes->position;
+        const auto x = [&](std::uint32_t node) { return first.nodes->ahead(node, ahead); };
+        const auto y = [&](std::uint32_t node) { return second.nodes->ahead(node, ahead); };
         const auto [p, q] = first.edges[candidate.first];
         const auto [r, s] = second.edges[candidate.second];
         double t = 0, u = 0;
-        if (!nearest_inside(x[p], x[q], y[r], y[s], t, u)) return false;
+        if (!nearest_inside(x(p), x(q), y(r), y(s), t, u)) return false;
     }
-    points = nearest_points(a, b, candidate);
+    points = nearest_points(a, b, candidate, ahead);
     return true;
+}
+
+namespace {
+
+// Whether a sheet goes nowhere from a point of it in the direction `away`: it lies with these weights between nodes.
+bool is_nearest_around(const ThinSurface& sheet, std::span<const std::uint32_t> nodes, std::span<const double> weights,
+                       double ahead, Vec3 away) {
+    if (sheet.stars == nullptr) return true;  // a rope
+    constexpr double rounding = 1e-6;         // of a cosine
+    const auto x = [&](std::uint32_t node) { return sheet.nodes->ahead(node, ahead); };
+    const auto goes_there = [&](Vec3 direction) {
+        return dot(away, direction) > rounding * length(away) * length(direction);
+    };
+    std::array<std::uint32_t, 3> of{};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (weights[k] != 0) of[count++] = nodes[k];
+    }
+    if (count == 3) return true;
+    if (count == 1) {
+        return std::ranges::none_of(sheet.stars->edges(of[0]), [&](std::uint32_t e) {
+            const auto [p, q] = sheet.edges[e];
+            return goes_there(x(p == of[0] ? q : p) - x(of[0]));
+        });
+    }
+    const Vec3 along = normalized(x(of[1]) - x(of[0]));
+    return std::ranges::none_of(sheet.stars->triangles(of[0]), [&](std::uint32_t t) {
+        const auto& triangle = sheet.triangles[t];
+        if (std::ranges::find(triangle, of[1]) == triangle.end()) return false;
+        const auto third =
+            *std::ranges::find_if(triangle, [&](std::uint32_t node) { return node != of[0] && node != of[1]; });
+        return goes_there(across(x(third) - x(of[0]), along));
+    });
+}
+
+}  // namespace
+
+bool are_nearest(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead,
+                 const ThinPoints& points) {
+    const std::span<const std::uint32_t> nodes(points.node.data(), static_cast<std::size_t>(points.count));
+    const std::span<const double> weights(points.weight.data(), nodes.size());
+    const auto first = static_cast<std::size_t>(points.count_first);
+    const ThinSurface &one = candidate.is_swapped ? b : a, &two = candidate.is_swapped ? a : b;
+    if (candidate.kind == ThinFeature::edge_on_edge) {
+        // What a rope presses on a sheet with its segments is borne by all edges below: by its nodes alone it sank in.
+        if (one.stars == nullptr || two.stars == nullptr) return true;
+        if (!is_nearest_around(one, nodes.first(first), weights.first(first), ahead, -points.away)) return false;
+    }
+    return is_nearest_around(two, nodes.subspan(first), weights.subspan(first), ahead, points.away);
 }
 
 bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,
@@ -160,7 +212,7 @@ bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const Thin
     return std::ranges::any_of(candidates, [&](const ThinCandidate& candidate) {
         const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
         ThinPoints points;
-        if (!find_points(a, b, candidate, points)) return false;
+        if (!find_points(a, b, candidate, 0, points)) return false;
         Vec3 velocity;
         for (int k = 0; k < points.count; ++k) {
             const auto at = static_cast<std::size_t>(k);

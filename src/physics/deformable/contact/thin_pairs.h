@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "physics/deformable/contact/node_stars.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/namespace.h"
 
@@ -17,9 +18,10 @@ struct ThinSurface {
     const Nodes* nodes = nullptr;
     std::span<const std::array<std::uint32_t, 3>> triangles;  ///< none of a rope
     std::span<const std::array<std::uint32_t, 2>>
-        edges;               ///< of a rope: its segments, broken ones from a node to itself
-    double radius = 0;       ///< distance that it keeps from its middle, m
-    double edge_length = 0;  ///< mean, m
+        edges;                         ///< of a rope: its segments, broken ones from a node to itself
+    double radius = 0;                 ///< distance that it keeps from its middle, m
+    double edge_length = 0;            ///< mean, m
+    const NodeStars* stars = nullptr;  ///< of a sheet
 };
 
 enum class ThinFeature : std::uint8_t { node_on_triangle, node_on_edge, edge_on_edge };
@@ -49,11 +51,19 @@ struct ThinPoints {
     Vec3 away;  ///< m
 };
 
-/// Of a candidate as its nodes lie now; false where the nearest points of two edges are at an end.
-bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points);
+/// Of a candidate as its nodes lie `ahead` (s) later by their mean velocities; false where the nearest points of two
+/// edges are at an end.
+bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead,
+                 ThinPoints& points);
 
 /// The same, of edges too that are nearest at an end.
-ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate);
+ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead);
+
+/// Whether nothing of either sheet beside the two features is nearer to the other's point: what lies over a neighbour
+/// of a triangle touches that one (the feasible directions of A. H. Chen et al., "Offset Geometric Contact", 2025).
+/// `ahead`: s, as these points were found.
+bool are_nearest(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead,
+                 const ThinPoints& points);
 
 /// Whether any of these is going to touch within `time_step` (s) by its velocity, or nearly does.
 bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,

@@ -74,13 +74,14 @@ double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall
 }
 
 // Velocity at a shut face.
-float followed(const FluidGrid& grid, const FluidObstacles& obstacles, double sticking, const FaceValue& face,
-               const Cell& c) {
+float followed(const FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking_at,
+               const FaceValue& face, const Cell& c) {
     const int axis = face.axis, cell = face.cell, below = cell - grid.stride(axis);
     const int nearer = grid.obstacle[cell] < grid.obstacle[below] ? cell : below;
     const Vec3 center = face_center(grid, axis, c);
     const Vec3 wall = obstacles.velocity_at(grid.obstacle_owner[nearer], center);
     if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
+    const double sticking = sticking_at(axis, cell);
     const double slides = sticking < 1 ? sliding(grid, axis, cell, center, wall) : 0;
 
     // Linear extrapolation from the velocity one face farther out through the obstacle's at its surface.
@@ -133,7 +134,7 @@ void admit_drops(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
-void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers) {
+void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking, TaskPool& workers) {
     const auto tiles = grid.tiles();
     std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
     parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
@@ -187,7 +188,8 @@ void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, c
                     const float open = grid.open[axis][std::max(cell, other)];
                     if (open <= 0 || grid.row[other] >= 0) continue;
                     const float gap = system.gap_fraction(grid.surface[cell], grid.surface[other]);
-                    b[row] += static_cast<double>(open) / gap * surface.at(cell, other, gap);
+                    b[row] += static_cast<double>(open * grid.mobility_at(axis, std::max(cell, other))) / gap *
+                              surface.at(cell, other, gap);
                 }
             }
         }
@@ -223,7 +225,7 @@ void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::a
                     const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
                     difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
                 }
-                field[axis][cell] -= static_cast<float>(difference * scale);
+                field[axis][cell] -= static_cast<float>(difference * scale * grid.mobility_at(axis, cell));
                 known = 1;
             });
         }
@@ -248,7 +250,7 @@ void subtract_last_gradient(FluidGrid& grid, double scale, TaskPool& workers) {
                 } else if (above || below) {
                     change = difference(above ? cell + stride : cell - stride);
                 }
-                grid.velocity[axis][cell] -= static_cast<float>(change * scale);
+                grid.velocity[axis][cell] -= static_cast<float>(change * scale * grid.mobility_at(axis, cell));
             });
         }
     });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
@@ -19,10 +21,13 @@ void admit_drops(FluidGrid& grid, TaskPool& workers);
 /// Velocity at a face; the components across are means of the four nearest faces, m/s.
 Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 
+/// To what degree the liquid at a face sticks to a wall: axis, cell.
+using Sticking = std::function<double(int, int)>;
+
 /// Shut faces move as the obstacle does: along its normal, or wholly where the obstacle is thin. To the degree that the
 /// liquid sticks (1: its layer at the wall is thicker than a cell, 0: much thinner) they are set such that the velocity
 /// at the surface is the obstacle's.
-void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers);
+void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking, TaskPool& workers);
 
 /// Volume that flows out of each liquid cell by faces and surfaces of obstacles, m³/s.
 void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
@@ -40,12 +45,12 @@ struct PressureGradient {
     double scale = 1;
 };
 
-/// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the distance to the neighbour or the
-/// surface, in cells). Other faces become unknown.
+/// Adds −`scale` β ∂x to the open faces of liquid cells (∂x: difference over the distance to the neighbour or the
+/// surface, in cells; β: the face's mobility). Other faces become unknown.
 void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
                        TaskPool& workers);
-/// Adds −`scale` ∂p of the last step's pressure to the known faces beside liquid. Where there was no liquid in the last
-/// step the gradient is that of the next face inwards, and of one cell alone none.
+/// Adds −`scale` β ∂p of the last step's pressure to the known faces beside liquid. Where there was no liquid in the
+/// last step the gradient is that of the next face inwards, and of one cell alone none.
 void subtract_last_gradient(FluidGrid& grid, double scale, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -117,6 +117,18 @@ public:
     /// Of faces where points are immersed: flow by a difference of the pressure that ends at the surface, and by the
     /// whole one, over that of an open face. Empty where there are none: `open` and 0.
     std::array<std::vector<float>, 3> liquid_conductance, solid_conductance;
+    /// Where the liquids are several, else empty: by liquid, its particles around a centre, in volumes of the cell; all
+    /// particles at faces, by number; and of faces, the first liquid's density over that of the liquid there.
+    std::vector<std::vector<float>> liquid_volume;
+    std::array<std::vector<float>, 3> face_volume, mobility;
+    /// Density of the liquid at a face over the first liquid's.
+    [[nodiscard]] double relative_density(int axis, int cell) const {
+        return mobility[axis].empty() ? 1 : 1 / static_cast<double>(mobility[axis][cell]);
+    }
+    /// Acceleration of the liquid at a face by a difference of the pressure, over that of the first liquid.
+    [[nodiscard]] float mobility_at(int axis, int cell) const {
+        return mobility[axis].empty() ? 1 : mobility[axis][cell];
+    }
     std::vector<int> immersed_cells;  ///< that immersed points fill a part of, ascending
 
     // Of static obstacles alone, kept from step to step.

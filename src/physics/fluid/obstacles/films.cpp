@@ -15,6 +15,16 @@ bool is_shut(const FluidGrid& grid, int cell) {
     return true;
 }
 
+// Density of the liquid around a cell's centre over the first liquid's.
+double relative_density(const FluidGrid& grid, int cell) {
+    if (grid.mobility[0].empty()) return 1;
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const int face : {cell, cell + grid.stride(axis)}) sum += grid.relative_density(axis, face);
+    }
+    return sum / 6;
+}
+
 }  // namespace
 
 void Films::begin(const FluidGrid& grid) {
@@ -73,7 +83,7 @@ void Films::find(const FluidGrid& grid, Vec3 weight) {
                 if (!(grid.thin[cell] & between) || film.begin >= 0 || !is_shut(grid, cell)) continue;
                 const bool is_at_liquid = from.begin == from.cell;
                 if (is_at_liquid && is_closed(grid, axis, std::max(cell, from.cell))) continue;
-                const double head = from.pressure.head + weight[axis] * side * h;
+                const double head = from.pressure.head + weight[axis] * relative_density(grid, from.begin) * side * h;
                 if (!(grid.pressure[from.begin] + head > 0)) continue;
                 film.begin = from.begin;
                 film.pressure = {from.pressure.row, head};

@@ -20,7 +20,7 @@ public:
     void meet(FluidGrid& grid, int axis, const Cell& c);
     /// Thin walls shut lower faces of the cell (bits of ThinMark): they may hold liquid back.
     void close(const FluidGrid& grid, int cell, int faces);
-    /// Once rows are known. `weight`: density times gravity, N/m³.
+    /// Once rows are known. `weight`: of the first liquid, density times gravity, N/m³.
     void find(const FluidGrid& grid, Vec3 weight);
 
     /// Pressure of a film: that of the row's cell and `head`, Pa.

@@ -161,14 +161,14 @@ ImmersedPoints::Response ImmersedPoints::response_of(const FacePart& part) const
     return {a, mass * a, part.drag * a};
 }
 
-void ImmersedPoints::find_conductance(double dt, const DragLiquid& liquid, double particle_mass, FluidGrid& grid) {
+void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGrid& grid) {
     if (parts_.empty()) return leave(grid);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         grid.liquid_conductance[axis] = grid.open[axis];
         grid.solid_conductance[axis].assign(grid.open[axis].size(), 0);
     }
-    density_ = liquid.density;
-    particle_mass_ = particle_mass;
+    const double density = liquids.first().density;
+    particle_mass_ = density * liquids.first().particle_volume;
     const double volume = cell_ * cell_ * cell_;
 
     // The slip of each point, and its drag by as much of it as is wet. Shares follow each other by point.
@@ -193,7 +193,8 @@ void ImmersedPoints::find_conductance(double dt, const DragLiquid& liquid, doubl
         const double filled = sample_center(grid, grid.density, place.data(), gradient);
         const double room = std::max<double>(sample_center(grid, grid.room, place.data(), gradient), min_liquid);
         const double wet = std::clamp(filled / room, 0.0, 1.0);
-        const ImmersedDrag drag = drag_of(points_[point].form, slip, liquid);
+        const auto [rho, viscosity] = liquids.around(grid, place.data());
+        const ImmersedDrag drag = drag_of(points_[point].form, slip, {rho, viscosity});
         for (std::size_t s = first; s < next; ++s) {
             FacePart& part = parts_[s];
             const Face& face = faces_[part.face];
@@ -208,7 +209,7 @@ void ImmersedPoints::find_conductance(double dt, const DragLiquid& liquid, doubl
     for (const FacePart& part : parts_) faces_[part.face].liquid -= fraction_of(part);
     for (Face& face : faces_) {
         face.liquid = std::max(face.liquid, min_liquid);
-        face.mass = density_ * volume * face.liquid;
+        face.mass = density * grid.relative_density(face.axis, face.cell) * volume * face.liquid;
         face.through = face.liquid;
     }
     for (const FacePart& part : parts_) {
@@ -222,11 +223,12 @@ void ImmersedPoints::find_conductance(double dt, const DragLiquid& liquid, doubl
     }
     // Over those of liquid alone, h² / (ρ h³).
     for (Face& face : faces_) {
+        const double rho = density * grid.relative_density(face.axis, face.cell);
         face.through += face.dragged;
-        const double by_mass = density_ * volume / (face.mass + face.held);
+        const double by_mass = rho * volume / (face.mass + face.held);
         grid.liquid_conductance[face.axis][face.cell] = static_cast<float>(face.through * face.liquid * by_mass);
         grid.solid_conductance[face.axis][face.cell] =
-            static_cast<float>(face.through * face.dragged * by_mass + density_ * volume * face.yields);
+            static_cast<float>(face.through * face.dragged * by_mass + rho * volume * face.yields);
     }
 }
 

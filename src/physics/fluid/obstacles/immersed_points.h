@@ -8,6 +8,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/immersed_drag.h"
+#include "physics/fluid/particles/mixture.h"
 
 namespace embody::physics::fluid {
 
@@ -42,8 +43,8 @@ public:
     /// grid's room. The obstacles are measured.
     void measure(double dt, FluidGrid& grid);
     /// Drag by the slip that the part begins with, and what faces let through: the grid's conductances. The grid has
-    /// the particles' velocities, not yet accelerated. `particle_mass`: kg.
-    void find_conductance(double dt, const DragLiquid& liquid, double particle_mass, FluidGrid& grid);
+    /// the particles' velocities, not yet accelerated.
+    void find_conductance(double dt, const Mixture& liquids, FluidGrid& grid);
     /// Velocities that drag alone leads to. Rows are known; forces have changed the grid's velocities.
     void predict(double dt, FluidGrid& grid);
     /// Adds what the faces' second matter carries out of the liquid's cells, m³/s.
@@ -103,7 +104,7 @@ private:
 
     Vec3 origin_;
     double cell_ = 0;
-    double density_ = 0, particle_mass_ = 0;  // of the liquid
+    double particle_mass_ = 0;  // of the first liquid, kg
     std::span<ImmersedPoint> points_;
     std::vector<Vec3> places_, velocities_, impulses_;
     std::vector<Vec3> reactions_;         // that the liquid has had in the part, N s

@@ -81,7 +81,7 @@ public:
     void measure(double dt, FluidGrid& grid, TaskPool& workers);
     /// Forces but the fluid's change velocities.
     void accelerate(double dt);
-    /// Once rows are known. `weight`: of the liquid, N/m³.
+    /// Once rows are known. `weight`: of the first liquid, N/m³.
     void list_areas(const FluidGrid& grid, Vec3 weight);
     /// Moves on to the end of the part.
     void advance(double dt);

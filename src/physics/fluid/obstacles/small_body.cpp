@@ -37,12 +37,13 @@ double drag_of_sphere(double radius, double speed, double density, double viscos
     return density / 2 * pi * radius * radius * root * root;
 }
 
-void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
-                     MovingObstacle& moving) {
+void drag_small_body(FluidGrid& grid, const Mixture& liquids, double dt, MovingObstacle& moving) {
     FluidObstacle& obstacle = *moving.obstacle;
     if (!moving.is_small || !moving.is_in_reach || !(obstacle.inverse_mass > 0)) return;
     const float place[3] = {static_cast<float>(moving.center.x), static_cast<float>(moving.center.y),
                             static_cast<float>(moving.center.z)};
+    const auto [density, viscosity] = liquids.around(grid, place);
+    const double particle_mass = liquids.first().density * liquids.first().particle_volume;
     float gradient[3];
     const double wet = std::clamp<double>(sample_center(grid, grid.density, place, gradient), 0, 1);
     const double volume = obstacle.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);

@@ -4,6 +4,7 @@
 #include "math/vec3.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/particles/mixture.h"
 
 namespace embody::physics::fluid {
 
@@ -15,8 +16,7 @@ struct MovingObstacle;
 double drag_of_sphere(double radius, double speed, double density, double viscosity);
 
 /// Drag between a body smaller than a cell and the liquid around it over dt, by equal and opposite impulses: the
-/// body's goes to its velocity and its obstacle's impulse, the liquid's to the faces around. `particle_mass`: kg.
-void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
-                     MovingObstacle& moving);
+/// body's goes to its velocity and its obstacle's impulse, the liquid's to the faces around.
+void drag_small_body(FluidGrid& grid, const Mixture& liquids, double dt, MovingObstacle& moving);
 
 }  // namespace embody::physics::fluid

@@ -31,8 +31,9 @@ double turbulent_stress(double speed, double y, double kinematic_viscosity) {
     return std::max(0.0, all - kinematic_viscosity * speed / y);
 }
 
-void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity,
-                         double particle_mass, double dt, TaskPool& workers) {
+void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, const Mixture& liquids, double dt,
+                         TaskPool& workers) {
+    const double particle_mass = liquids.first().density * liquids.first().particle_volume;
     const auto tiles = grid.tiles();
     const double h = grid.cell_size();
     std::vector<std::vector<SlowedFace>> found(static_cast<std::size_t>(workers.workers()));
@@ -54,7 +55,9 @@ void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double dens
         const double speed = length(along);
         // The speed is taken at half a cell from the wall even where the face is closer: a cell does not resolve
         // layers.
-        const double stress = turbulent_stress(speed, std::max(distance, 0.5f) * h, viscosity / density);
+        const auto diffusion = [](const FluidProperties& liquid) { return liquid.viscosity / liquid.density; };
+        const double stress =
+            turbulent_stress(speed, std::max(distance, 0.5f) * h, liquids.mean_at_face(grid, axis, cell, diffusion));
         if (!(stress > 0)) return;
         const double rate = dt * stress / (speed * h * static_cast<double>(grid.open[axis][cell]));
         slowed.push_back({axis, cell, owner, center, -along[axis] * rate / (1 + rate)});

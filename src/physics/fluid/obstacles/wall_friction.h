@@ -5,6 +5,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
+#include "physics/fluid/particles/mixture.h"
 
 namespace embody::physics::fluid {
 
@@ -14,8 +15,8 @@ namespace embody::physics::fluid {
 double turbulent_stress(double speed, double y, double kinematic_viscosity);
 
 /// Slows the faces next to obstacles that liquid does not move by the layer at the wall, which is thinner than a cell,
-/// and applies the reaction to the obstacles; small bodies that move freely have no such layer. `particle_mass` in kg.
-void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity,
-                         double particle_mass, double dt, TaskPool& workers);
+/// and applies the reaction to the obstacles; small bodies that move freely have no such layer.
+void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, const Mixture& liquids, double dt,
+                         TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -43,8 +43,8 @@ void FluidSolver::keep_out(TaskPool& workers) {
     obstacles_.advance(0);
 }
 
-// The displacement of least Σ |d|² that makes room for the obstacles and keeps the liquid's volume: d = −∇q, ∇·d = 0,
-// as the pressure moves liquid at rest.
+// The displacement of least Σ ρ |d|² that makes room for the obstacles and keeps the liquid's volume: d = −∇q/ρ, ∇·d =
+// 0, as the pressure moves liquid at rest.
 void FluidSolver::displace(double fraction, Followed& followed, TaskPool& workers) {
     const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size();
@@ -54,7 +54,8 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
     obstacles_.measure(fraction, grid_, workers);
     if (grid_.on_grid() == 0) return obstacles_.advance(fraction);
     find_places(fraction, workers);
-    particles_to_grid(grid_, particles_, places_, particle_fraction(), workers);
+    liquids_.identify(particles_, workers);
+    particles_to_grid(grid_, particles_, places_, {particle_fraction(), liquids_}, workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
@@ -73,7 +74,8 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_obstacles(grid_, obstacles_, 0, workers);
+    follow_obstacles(
+        grid_, obstacles_, [](int, int) { return 0; }, workers);
 
     const std::size_t count = grid_.on_grid();
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange part) {

@@ -24,9 +24,8 @@ bool is_drop(const FluidGrid& grid, const float* place) {
 // A film of the particle's volume spread over a cell's area, of thickness δ: the stress at the ground is 3 μ u/δ
 // (Nusselt) plus that of turbulence. Its rim holds it by σ (cos θr − cos θa) a width, that of the particle's edge d (C.
 // Furmidge, "Studies at phase interfaces", 1962).
-void slow_at_wall(const DropSurroundings& around, const float* place, float* velocity) {
+void slow_at_wall(const DropSurroundings& around, const FluidProperties& liquid, const float* place, float* velocity) {
     const FluidGrid& grid = around.grid;
-    const FluidProperties& liquid = around.liquid;
     const double dt = around.dt, hysteresis = around.settings.angle_hysteresis;
     float gradient[3];
     if (!(sample_center(grid, grid.obstacle, place, gradient) < around.settings.wall_distance)) return;

@@ -35,17 +35,18 @@ bool touches_fixed(const FluidGrid& grid, const PressureSystem& system, const Fl
 
 }  // namespace
 
-void FreeComponents::Component::add(Vec3 x, Vec3 v) {
+void FreeComponents::Component::add(Vec3 x, Vec3 v, double weight) {
     ++count;
-    place += x;
-    velocity += v;
-    turn += cross(x, v);
-    squares += outer(x, x);
+    mass += weight;
+    place += x * weight;
+    velocity += v * weight;
+    turn += cross(x, v) * weight;
+    squares += outer(x, x) * weight;
 }
 
 // A thousandth more in all directions: components may be flat.
 Mat3 FreeComponents::Component::inertia() const {
-    const Mat3 central = squares - outer(place, place) * (1 / count);
+    const Mat3 central = squares - outer(place, place) * (1 / mass);
     return Mat3::identity() * (1.001 * trace(central)) - central;
 }
 
@@ -136,15 +137,16 @@ void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, 
         Component& its = components_[static_cast<std::size_t>(component)];
         if (!its.is_free) continue;
         component_of_particle_[i] = component;
-        its.add(to_vec(particles[i].position), to_vec(particles[i].velocity));
+        its.add(to_vec(particles[i].position), to_vec(particles[i].velocity), options.liquids.relative_mass(i));
     }
     component_of_point_ = immersed.rows(grid);
     for (std::int32_t& row : component_of_point_) row = row < 0 ? -1 : component_of_row_[static_cast<std::size_t>(row)];
 }
 
 void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed,
-                         double particle_mass, std::vector<FluidParticle>& particles) const {
+                         const Mixture& liquids, std::vector<FluidParticle>& particles) const {
     if (components_.empty()) return;
+    const double particle_mass = liquids.first().density * liquids.first().particle_volume;
     const double min_turned = settings_.min_turned_particles;
     struct Correction {
         Vec3 linear, angular, center;
@@ -152,14 +154,14 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const Imm
     std::vector<Component> now(components_.size(), Component{.squares = Mat3::zero()});
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (component_of_particle_[i] < 0) continue;
-        now[static_cast<std::size_t>(component_of_particle_[i])].add(to_vec(particles[i].position),
-                                                                     to_vec(particles[i].velocity));
+        now[static_cast<std::size_t>(component_of_particle_[i])].add(
+            to_vec(particles[i].position), to_vec(particles[i].velocity), liquids.relative_mass(i));
     }
     std::vector<Correction> corrections(components_.size());  // so far as momenta over the particle mass
     for (std::size_t component = 0; component < components_.size(); ++component) {
         const Component &before = components_[component], &after = now[component];
         if (after.count == 0) continue;
-        corrections[component] = {before.velocity - after.velocity + after.count * change,
+        corrections[component] = {before.velocity - after.velocity + after.mass * change,
                                   before.angular_momentum() - after.angular_momentum(), after.center()};
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -182,9 +184,10 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const Imm
     for (std::size_t component = 0; component < components_.size(); ++component) {
         const Component& after = now[component];
         if (after.count == 0) continue;
-        corrections[component].linear = corrections[component].linear / after.count;
-        corrections[component].angular =
-            after.count < min_turned ? Vec3{} : solve(after.inertia(), corrections[component].angular);
+        corrections[component].linear = corrections[component].linear / after.mass;
+        corrections[component].angular = static_cast<double>(after.count) < min_turned
+                                             ? Vec3{}
+                                             : solve(after.inertia(), corrections[component].angular);
     }
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (component_of_particle_[i] < 0) continue;

@@ -21,6 +21,7 @@ namespace embody::physics::fluid {
 class FreeComponents {
 public:
     struct Options {
+        const Mixture& liquids;
         bool all = false;  ///< else the components are found only where the whole fluid is free
         FluidComponentSettings settings;
     };
@@ -31,19 +32,20 @@ public:
     /// For the same particles after they moved: restores the momentum of each component, less what its bodies and the
     /// points in it were given, and likewise the angular momentum about its centre. `change`: of all velocities by
     /// gravity, m/s.
-    void end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed, double particle_mass,
+    void end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed, const Mixture& liquids,
              std::vector<FluidParticle>& particles) const;
 
 private:
     /// Sums over a component's particles, m and m/s.
     struct Component {
         bool is_free = true;
-        double count = 0;
-        Vec3 place, velocity, turn;  // of x, v, x × v
-        Mat3 squares;                // of x xᵀ
-        void add(Vec3 x, Vec3 v);
-        [[nodiscard]] Vec3 center() const { return place / count; }
-        [[nodiscard]] Vec3 angular_momentum() const { return turn - cross(place, velocity) / count; }
+        std::size_t count = 0;
+        double mass = 0;             // in particles of the first liquid
+        Vec3 place, velocity, turn;  // of x, v, x × v, by mass
+        Mat3 squares;                // of x xᵀ, by mass
+        void add(Vec3 x, Vec3 v, double weight);
+        [[nodiscard]] Vec3 center() const { return place / mass; }
+        [[nodiscard]] Vec3 angular_momentum() const { return turn - cross(place, velocity) / mass; }
         [[nodiscard]] Mat3 inertia() const;
     };
     /// A body that a component touches, with the impulse that it had got before.

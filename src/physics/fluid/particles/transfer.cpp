@@ -39,8 +39,25 @@ void clear_tiles(FluidGrid& grid, TaskPool& workers) {
                 std::fill_n(grid.mass[axis].begin() + first, FluidGrid::tile[0], 0.0f);
             }
             std::fill_n(grid.density.begin() + first, FluidGrid::tile[0], 0.0f);
+            for (auto& volume : grid.face_volume) {
+                if (!volume.empty()) std::fill_n(volume.begin() + first, FluidGrid::tile[0], 0.0f);
+            }
+            for (auto& volumes : grid.liquid_volume) std::fill_n(volumes.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
+}
+
+// The grid's fields of several liquids: as large as the others, or none.
+void size_for(const Mixture& liquids, FluidGrid& grid) {
+    const std::size_t cells = liquids.is_one() ? 0 : grid.density.size();
+    grid.liquid_volume.resize(liquids.is_one() ? 0 : liquids.liquids().size());
+    const auto fit = [cells](std::vector<float>& field) {
+        if (field.size() != cells) field.assign(cells, 0);
+    };
+    for (auto& volumes : grid.liquid_volume) fit(volumes);
+    for (auto* fields : {&grid.face_volume, &grid.mobility}) {
+        for (auto& field : *fields) fit(field);
+    }
 }
 
 /// Trilinear weights of eight corners: those with the lower z and with the upper one, each in the order of x, then y.
@@ -61,7 +78,15 @@ void add_to(float* base, int dy, int dz, Four lower, Four upper) {
     store_pairs(load_pairs(base + dz, base + dz + dy) + upper, base + dz, base + dz + dy);
 }
 
-void spread(FluidGrid& grid, const FluidParticle& particle, const std::array<float, 3>& place, float volume) {
+/// A particle's volume, in cells; of several liquids, which one it is of and its mass.
+struct Load {
+    float volume = 0;
+    std::size_t liquid = 0;
+    float mass = 1;
+};
+
+template <bool are_several>
+void spread(FluidGrid& grid, const FluidParticle& particle, const std::array<float, 3>& place, const Load& load) {
     const int dy = grid.stride(1), dz = grid.stride(2);
     const auto h = static_cast<float>(grid.cell_size());
     float at[3];
@@ -71,14 +96,19 @@ void spread(FluidGrid& grid, const FluidParticle& particle, const std::array<flo
         const float* gradient = particle.affine[axis];
         const float gx = gradient[0] * h, gy = gradient[1] * h, gz = gradient[2] * h;
         const float low = particle.velocity[axis] - (gx * c.f[0] + gy * c.f[1] + gz * c.f[2]);
-        const Weights weights(c, 1);
+        const Weights weights(c, are_several ? load.mass : 1);
         const Four across{0, gx, gy, gy + gx}, values = across + low;
         add_to(&grid.velocity[axis][c.base], dy, dz, weights.lower * values, weights.upper * (values + gz));
         add_to(&grid.mass[axis][c.base], dy, dz, weights.lower, weights.upper);
+        if constexpr (are_several) {
+            const Weights each(c, 1);
+            add_to(&grid.face_volume[axis][c.base], dy, dz, each.lower, each.upper);
+        }
     }
     const Corners c = corners_at(grid, at, 3);
-    const Weights weights(c, volume);
+    const Weights weights(c, load.volume);
     add_to(&grid.density[c.base], dy, dz, weights.lower, weights.upper);
+    if constexpr (are_several) add_to(&grid.liquid_volume[load.liquid][c.base], dy, dz, weights.lower, weights.upper);
 }
 
 /// A field between eight corners: its value and gradient by cell.
@@ -103,11 +133,15 @@ struct Between {
     }
 };
 
-}  // namespace
-
-void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
-                       const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers) {
-    clear_tiles(grid, workers);
+template <bool are_several>
+void spread_all(FluidGrid& grid, const std::vector<FluidParticle>& particles,
+                const std::vector<std::array<float, 3>>& places, const ParticleMatter& matter, TaskPool& workers) {
+    const std::span<const std::uint16_t> liquid_of = matter.liquids.liquid_of_particles();
+    std::vector<Load> loads;
+    for (const FluidProperties& liquid : matter.liquids.liquids()) {
+        const double mass = liquid.density / matter.liquids.first().density;
+        loads.push_back({matter.volume, loads.size(), static_cast<float>(mass)});
+    }
 
     // Tiles of one colour reach no common face, so that the order of sums at each face does not depend on the workers.
     for (int color = 0; color < FluidGrid::colors; ++color) {
@@ -116,10 +150,34 @@ void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& partic
             for (std::size_t i = range.first; i < range.last; ++i) {
                 grid.for_cells(grid.tiles()[list[i]], [&](int cell, const Cell&) {
                     const std::uint32_t first = grid.first_particle[cell], count = grid.particle_count[cell];
-                    for (std::uint32_t p = first; p < first + count; ++p) spread(grid, particles[p], places[p], volume);
+                    for (std::uint32_t p = first; p < first + count; ++p)
+                        spread<are_several>(grid, particles[p], places[p], loads[are_several ? liquid_of[p] : 0]);
                 });
             }
         });
+    }
+}
+
+// Where no particle is, in gaps between obstacles, the liquid is that of the cells at the face.
+float mobility_of(const FluidGrid& grid, const Mixture& liquids, int axis, int cell) {
+    const float mass = grid.mass[axis][cell];
+    if (mass > 1e-6f) return grid.face_volume[axis][cell] / mass;
+    const auto density = [](const FluidProperties& liquid) { return liquid.density; };
+    return static_cast<float>(liquids.first().density / liquids.mean_at_face(grid, axis, cell, density));
+}
+
+}  // namespace
+
+void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
+                       const std::vector<std::array<float, 3>>& places, const ParticleMatter& matter,
+                       TaskPool& workers) {
+    const bool are_several = !matter.liquids.is_one();
+    size_for(matter.liquids, grid);
+    clear_tiles(grid, workers);
+    if (are_several) {
+        spread_all<true>(grid, particles, places, matter, workers);
+    } else {
+        spread_all<false>(grid, particles, places, matter, workers);
     }
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_rows(corner, [&](int first, const Cell&) {
@@ -128,6 +186,7 @@ void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& partic
                     const float mass = grid.mass[axis][cell];
                     grid.known[axis][cell] = mass > 1e-6f;
                     grid.velocity[axis][cell] = mass > 1e-6f ? grid.velocity[axis][cell] / mass : 0;
+                    if (are_several) grid.mobility[axis][cell] = mobility_of(grid, matter.liquids, axis, cell);
                 }
             }
         });

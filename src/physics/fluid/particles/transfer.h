@@ -7,13 +7,22 @@
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/particles/mixture.h"
 
 namespace embody::physics::fluid {
 
-/// Particles to faces: grid.mass, grid.velocity (momentum over mass), grid.density (`volume`: a particle's, in cells).
-/// grid.known marks the faces that any particle reached. `places`: where each particle meets the grid.
+/// What particles are: each one's volume, in cells, and their liquids, which are identified.
+struct ParticleMatter {
+    float volume;
+    const Mixture& liquids;
+};
+
+/// Particles to faces: grid.mass, grid.velocity (momentum over mass), grid.density.
+/// grid.known marks the faces that any particle reached. `places`: where each particle meets the grid. Of several
+/// liquids also grid.liquid_volume, grid.face_volume and grid.mobility.
 void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
-                       const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers);
+                       const std::vector<std::array<float, 3>>& places, const ParticleMatter& matter,
+                       TaskPool& workers);
 
 /// A vector field on faces at a place, and its gradient.
 struct FieldSample {

@@ -67,7 +67,8 @@ void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObst
     for (BoundFace& face : moving.bound) {
         face.mass = 0;
         if (!grid.known[face.axis][face.cell]) continue;
-        face.mass = density * volume * face.fraction * liquid_fraction(grid, face.axis, face.cell, gravity * density);
+        const double rho = density * grid.relative_density(face.axis, face.cell);
+        face.mass = rho * volume * face.fraction * liquid_fraction(grid, face.axis, face.cell, gravity * rho);
         face.speed = grid.velocity[face.axis][face.cell];
         const Vec3 n = along(face.axis);
         masses += outer(n, n) * face.mass;

@@ -32,7 +32,8 @@ struct ObstacleResponse {
 };
 
 /// Finds the liquid at a moving obstacle's bound faces by the last pressure, its speed, and the obstacle's response.
-/// The obstacle takes over the liquid's momentum: its velocities become the common ones.
+/// The obstacle takes over the liquid's momentum: its velocities become the common ones. `density`: of the first
+/// liquid.
 void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObstacle& moving);
 
 /// Applies the change of the liquid's momentum to the obstacle, once both have their final velocity.

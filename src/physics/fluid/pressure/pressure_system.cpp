@@ -47,7 +47,9 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
         const auto& conductance = has_immersed ? grid.liquid_conductance[axis] : grid.open[axis];
         for (const bool up : {false, true}) {
             const int other = up ? cell + stride : cell - stride, face = up ? other : cell;
-            const float liquid = conductance[face], solid = has_immersed ? grid.solid_conductance[axis][face] : 0;
+            const float mobility = grid.mobility_at(static_cast<int>(axis), face);
+            const float liquid = conductance[face] * mobility,
+                        solid = has_immersed ? grid.solid_conductance[axis][face] * mobility : 0;
             std::int32_t& neighbour = (up ? own.upper : own.lower)[axis];
             neighbour = none;
             if (liquid <= 0) continue;

@@ -15,8 +15,9 @@
 
 namespace embody::physics::fluid {
 
-/// A x = b over the liquid's cells: (A x)_c = Σ_f w_f / θ_f (x_c − x_neighbour), with w the open fraction of a face and
-/// x = 0 at a distance θ in air, plus the effect of the pressure on bodies that it moves. Symmetric, positive definite.
+/// A x = b over the liquid's cells: (A x)_c = Σ_f β_f w_f / θ_f (x_c − x_neighbour), with w the open fraction of a
+/// face, β the first liquid's density over that there and x = 0 at a distance θ in air, plus the effect of the pressure
+/// on bodies that it moves. Symmetric, positive definite.
 class PressureSystem {
 public:
     /// Marks and numbers the liquid's cells; computes coefficients and preconditioner from the grid's open fractions

@@ -74,6 +74,7 @@ void SurfacePressure::measure(double impulse, const FluidTensionSettings& settin
     constexpr float min_room = 1e-3f;  // of the kernel: smaller values are rounding
     settings_ = settings;
     impulse_ = impulse;
+    fractions_.clear();
     const std::size_t cells = grid.row.size();
     filled_.assign(cells, 0);
     room_.assign(cells, 1);

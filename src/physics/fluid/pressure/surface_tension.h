@@ -22,15 +22,18 @@ double steady_tension(double density, double h, double dt);
 /// zero before measure().
 class SurfacePressure {
 public:
-    /// Curvature from the density around centres. `impulse`: tension times the length of the step, N s/m.
+    /// Curvature from the density around centres. `impulse`: tension times the length of the step, N s/m, the same
+    /// everywhere unless set_fractions() follows.
     void measure(double impulse, const FluidTensionSettings& settings, const FluidGrid& grid, TaskPool& workers);
+    /// After measure(): tension times the length of the step by cell, over its `impulse`.
+    void set_fractions(std::vector<float> fractions) { fractions_ = std::move(fractions); }
     /// The pressure is zero from here on.
     void clear() { impulse_ = 0; }
     [[nodiscard]] bool is_none() const { return impulse_ == 0; }
     /// Pressure times time, Pa s, between a liquid's cell and one in air, at a fraction of the distance to the latter.
     [[nodiscard]] double at(int liquid, int air, double fraction) const {
         const auto inside = static_cast<std::size_t>(liquid), outside = static_cast<std::size_t>(air);
-        return impulse_ *
+        return impulse_ * (fractions_.empty() ? 1 : fractions_[inside]) *
                (curvature_[inside] + fraction * (static_cast<double>(curvature_[outside]) - curvature_[inside]));
     }
 
@@ -41,6 +44,7 @@ public:
 private:
     FluidTensionSettings settings_;  // of the last measure()
     double impulse_ = 0;
+    std::vector<float> fractions_;  // of the impulse, by cell; none: 1
     std::vector<float> filled_, room_, scratch_;
     std::vector<float> curvature_;  // of the surface through a centre or next to it, 1/m; positive around a drop
 };

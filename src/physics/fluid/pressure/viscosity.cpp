@@ -24,11 +24,11 @@ float filled(const FluidGrid& grid, int cell) { return std::clamp(0.5f - grid.su
 
 }  // namespace
 
-bool is_viscous(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double dt) {
+bool is_viscous(const FluidProperties& liquid, const FluidViscositySettings& settings, double h, double dt) {
     return liquid.yield_stress > 0 || liquid.viscosity / liquid.density * dt / (h * h) > settings.min_diffusion_number;
 }
 
-double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double speed) {
+double sticking_of(const FluidProperties& liquid, const FluidViscositySettings& settings, double h, double speed) {
     constexpr double min_viscosity = 1e-12;  // Pa s: only not zero; the thinnest liquids have 1e-4
     const double layer = settings.stick_reynolds, rate = std::max(speed, settings.min_stick_speed) / h;
     const double reynolds =
@@ -57,7 +57,8 @@ void ViscositySystem::number_faces(const FluidGrid& grid, const FluidObstacles& 
                 const float liquid = (filled(grid, cell) + filled(grid, below)) / 2;
                 number_[axis][cell] = static_cast<std::int32_t>(faces_.size());
                 faces_.emplace_back(axis, cell);
-                inertia_.push_back(std::max(min_fraction, grid.open[axis][cell] * liquid));
+                inertia_.push_back(std::max(min_fraction, grid.open[axis][cell] * liquid) *
+                                   grid.relative_density(axis, cell));
             });
         }
     }
@@ -78,22 +79,23 @@ std::int32_t ViscositySystem::fixed_face(const FluidGrid& grid, const FluidObsta
     return number;
 }
 
-// Bingham: μ + τ / rate, from the rates of strain before the step.
-void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const FluidGrid& grid) {
+// Bingham: μ + τ / rate, from the rates of strain before the step. Of several liquids in a cell the fluidities count by
+// their volumes, as in layers that lie on each other.
+void ViscositySystem::measure_rates(const Mixture& liquids, double dt, const FluidGrid& grid) {
     constexpr double min_rate = 1e-6, min_viscosity = 1e-9;  // 1/s, Pa s: only not zero
-    const double h = grid.cell_size(), most = settings_.max_diffusion_number * liquid.density * h * h / dt;
+    const double h = grid.cell_size();
+    const bool can_yield = std::ranges::any_of(liquids.liquids(), [](const auto& of) { return of.yield_stress > 0; });
     const float min_fraction = settings_.min_fraction;
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             const float fraction = filled(grid, cell);
             viscosity_[cell] = 0;
             if (grid.row[cell] < 0 && fraction < min_fraction) return;
-            double viscosity = liquid.viscosity;
-            if (liquid.yield_stress > 0) {
+            double squares = 0;
+            if (can_yield) {
                 const auto at_center = [&](int axis, int at) {
                     return 0.5 * (grid.velocity[axis][at] + grid.velocity[axis][at + grid.stride(axis)]);
                 };
-                double squares = 0;
                 for (int a = 0; a < 3; ++a) {
                     for (int b = a; b < 3; ++b) {
                         const int da = grid.stride(a), db = grid.stride(b);
@@ -104,9 +106,16 @@ void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const Fl
                         squares += (a == b ? 2 : 4) * rate * rate;
                     }
                 }
-                viscosity += liquid.yield_stress / std::max(std::sqrt(squares), min_rate);
             }
-            viscosity_[cell] = static_cast<float>(std::max(std::min(viscosity, most), min_viscosity));
+            const auto viscosity_of = [&](const FluidProperties& liquid) {
+                double viscosity = liquid.viscosity;
+                if (liquid.yield_stress > 0) viscosity += liquid.yield_stress / std::max(std::sqrt(squares), min_rate);
+                const double most = settings_.max_diffusion_number * liquid.density * h * h / dt;
+                return std::max(std::min(viscosity, most), min_viscosity);
+            };
+            const auto fluidity_of = [&](const FluidProperties& liquid) { return 1 / viscosity_of(liquid); };
+            viscosity_[cell] = static_cast<float>(liquids.is_one() ? viscosity_of(liquids.first())
+                                                                   : 1 / liquids.mean(grid, cell, fluidity_of));
         });
     }
 }
@@ -186,9 +195,9 @@ void ViscositySystem::list_strains(const FluidGrid& grid, const FluidObstacles& 
     }
 }
 
-void ViscositySystem::list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidObstacles& obstacles) {
+void ViscositySystem::list_bodies(double density, const FluidGrid& grid, const FluidObstacles& obstacles) {
     bodies_.clear();
-    const double h = grid.cell_size(), unit = liquid.density * h * h * h;
+    const double h = grid.cell_size(), unit = density * h * h * h;
     for (const FixedFace& face : fixed_) {
         if (face.owner < 0 || body_of_[face.owner] >= 0) continue;
         const MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(face.owner)];
@@ -343,33 +352,33 @@ int ViscositySystem::iterate() {
     return result.end == GradientEnd::converged ? result.iterations : most + 1;
 }
 
-void ViscositySystem::begin(const Viscosity& liquid, double dt, const FluidViscositySettings& settings,
+void ViscositySystem::begin(const Mixture& liquids, double dt, const FluidViscositySettings& settings,
                             const FluidGrid& grid, const FluidObstacles& obstacles) {
     settings_ = settings;
     number_faces(grid, obstacles);
-    measure_rates(liquid, dt, grid);
+    measure_rates(liquids, dt, grid);
 }
 
-int ViscositySystem::solve(const Viscosity& liquid, double dt, FluidGrid& grid, FluidObstacles& obstacles) {
-    const double h = grid.cell_size();
-    list_strains(grid, obstacles, dt / (liquid.density * h * h));
-    list_bodies(liquid, grid, obstacles);
+int ViscositySystem::solve(const Mixture& liquids, double dt, FluidGrid& grid, FluidObstacles& obstacles) {
+    const double h = grid.cell_size(), density = liquids.first().density;
+    list_strains(grid, obstacles, dt / (density * h * h));
+    list_bodies(density, grid, obstacles);
     const std::size_t size = faces_.size() + fixed_.size() + 6 * bodies_.size();
     for (auto* vector : {&x_, &r_, &z_, &p_, &q_, &diagonal_}) vector->assign(size, 0);
     start_from(grid, obstacles);
     fill_diagonal();
     fill_residual();
     const int iterations = iterate();
-    write_back(liquid, grid, obstacles);
+    write_back(density, grid, obstacles);
     return iterations;
 }
 
-void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, FluidObstacles& obstacles) {
+void ViscositySystem::write_back(double density, FluidGrid& grid, FluidObstacles& obstacles) {
     const std::size_t faces = faces_.size() + fixed_.size();
     for (std::size_t i = 0; i < faces_.size(); ++i) {
         grid.velocity[faces_[i].first][faces_[i].second] = static_cast<float>(x_[i]);
     }
-    const double h = grid.cell_size(), unit = liquid.density * h * h * h;
+    const double h = grid.cell_size(), unit = density * h * h * h;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body& body = bodies_[i];
         MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(body.owner)];

@@ -26,6 +26,7 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
         surface.triangles = cloth.triangles;
         surface.edges = record.cloth()->edges();
         surface.edge_length = record.cloth()->edge_length();
+        surface.stars = &record.cloth()->layers().stars();
         surface.radius = std::max(surface.radius, cloth.thickness / 2);
         return surface;
     }
@@ -147,8 +148,12 @@ void ThinGroupPart::begin_pairs(std::span<const TouchedBody> bodies) {
         pair.b = place_[pair.b];
         const Member& member = members_[pair.a];
         ClothSheet* sheet = pair.a == pair.b ? member.record().cloth() : nullptr;
-        if (sheet != nullptr) pair.candidates = sheet->near_layers(member.substep, world_.workers);
-        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.held_a, pair.held_b});
+        if (sheet != nullptr) {
+            pair.candidates = sheet->near_layers(member.substep, world_.workers);
+            const ThinSurface& surface = seen_[pair.a].surface;
+            leave_out_held(surface, surface, pair.held, pair.candidates);
+        }
+        guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.held});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
     pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, carried_mass(bodies), settings});

@@ -47,23 +47,6 @@ std::vector<bool> held_nodes(const DeformableAccess& world, const DeformableReco
     return is_held;
 }
 
-// Features that are held together do not touch as well.
-void leave_out_held(const ThinSurface& on_a, const std::vector<bool>& held_a, const ThinSurface& on_b,
-                    const std::vector<bool>& held_b, std::vector<ThinCandidate>& candidates) {
-    const auto has_held = [](const std::vector<bool>& held, std::span<const std::uint32_t> nodes) {
-        return !held.empty() && std::ranges::any_of(nodes, [&](std::uint32_t node) { return held[node]; });
-    };
-    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
-        const bool is_swapped = candidate.is_swapped;
-        const ThinSurface &one = is_swapped ? on_b : on_a, &two = is_swapped ? on_a : on_b;
-        const std::vector<bool>&held_one = is_swapped ? held_b : held_a, &held_two = is_swapped ? held_a : held_b;
-        return (candidate.kind == ThinFeature::edge_on_edge ? has_held(held_one, one.edges[candidate.first])
-                                                            : has_held(held_one, {&candidate.first, 1})) ||
-               (candidate.kind == ThinFeature::node_on_triangle ? has_held(held_two, two.triangles[candidate.second])
-                                                                : has_held(held_two, two.edges[candidate.second]));
-    });
-}
-
 // Acceleration by gravity and its constant force, m/s².
 double pull_on(const DeformableAccess& world, const DeformableRecord& record) {
     return length(record.acceleration(world.settings.gravity));
@@ -77,9 +60,8 @@ void find_candidates(const DeformableAccess& world, const DeformableRecord& a, c
     find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
                          world.workers, pair.candidates);
     const double distance = on_a.radius + on_b.radius;
-    pair.held_a = held_nodes(world, a, b, distance);
-    pair.held_b = held_nodes(world, b, a, distance);
-    leave_out_held(on_a, pair.held_a, on_b, pair.held_b, pair.candidates);
+    pair.held = {held_nodes(world, a, b, distance), held_nodes(world, b, a, distance)};
+    leave_out_held(on_a, on_b, pair.held, pair.candidates);
 }
 
 // m: a wider member has broken numbers; it will freeze, and others ignore it.
@@ -254,7 +236,14 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
         const DeformableRecord& record = *thin[i].record;
         if (!record.cloth()) continue;
         const Material& material = record.definition.material;
-        pairs.push_back({.a = i, .b = i, .friction = friction_between(material, material, world.rigid.surface_pairs)});
+        ThinPair own{
+            .a = i, .b = i, .friction = friction_between(material, material, world.rigid.surface_pairs), .held = {}};
+        own.held.are_of_one = true;
+        for (const Tie& tie : record.definition.ties) {
+            own.held.of_a.resize(record.nodes().size(), false);
+            own.held.of_a[tie.node] = true;
+        }
+        pairs.push_back(std::move(own));
     }
     std::vector<ThinTie> ties = find_ties(world, thin);
     for (const ThinTie& tie : ties) {

@@ -142,6 +142,11 @@ void read_particles(FluidRecord& record, TaskPool& workers) {
         }
     });
     ++record.version;
+    const FluidProperties& first = record.solver->properties();
+    record.definition.density = first.density;
+    record.definition.viscosity = first.viscosity;
+    record.definition.yield_stress = first.yield_stress;
+    record.definition.surface_tension = first.surface_tension;
     const ParticleReach reach = reach_of(particles, workers);
     record.fastest = std::sqrt(static_cast<double>(reach.fastest_squared));
     record.bounds = {};
@@ -215,7 +220,15 @@ FluidRecord fluid_around(const FluidRecord& other, FluidIds ids) {
 }
 
 FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to) {
-    return to.solver->add_particles(from.solver->take_particles(ids), from.solver->origin());
+    FluidIds moved{};
+    for (const auto& [run, liquid] : from.solver->liquids().runs(ids)) {
+        // Copies: the list of liquids changes as they leave.
+        const FluidProperties matter = from.solver->liquids().of(run.first);
+        const FluidIds added = to.solver->add_particles(from.solver->take_particles(run), from.solver->origin());
+        to.solver->set_matter(added, matter);
+        moved = {moved.last == 0 ? added.first : moved.first, added.last};
+    }
+    return moved;
 }
 
 }  // namespace embody::physics::stages

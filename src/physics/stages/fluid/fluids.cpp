@@ -199,16 +199,18 @@ void note_outcome(const FluidAccess& world, FluidRecord& fluid, const FluidOutco
     }
 }
 
-// Height of the particles' centroid, against gravity, m.
+// Height of the particles' centre of mass, against gravity, m.
 double height_of(const FluidSolver& solver, Vec3 gravity) {
     if (solver.particles().empty() || gravity == Vec3{}) return 0;
     const Vec3 up = -normalized(gravity);
-    double sum = 0;
+    double sum = 0, mass = 0;
     for (const FluidParticle& particle : solver.particles()) {
+        const double relative = solver.liquids().of(particle.id).density / solver.properties().density;
         const auto& [x, y, z] = particle.position;
-        sum += dot(up, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        sum += dot(up, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}) * relative;
+        mass += relative;
     }
-    return sum / static_cast<double>(solver.particles().size());
+    return sum / mass;
 }
 
 // Running honey is slower than the jitter of water at rest: liquid that still sinks as a whole does not sleep.
@@ -221,7 +223,10 @@ bool has_sunk(const FluidAccess& world, const FluidRecord& fluid) {
 void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
     const double quiet_speed = world.settings.solver.fluid.sleep.quiet_speed,
                  time_to_sleep = world.settings.solver.fluid.sleep.time_to_sleep;
-    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(world.workers) < quiet_speed;
+    const Vec3 gravity = world.settings.gravity * fluid.definition.gravity_factor;
+    const bool is_quiet =
+        fluid.solver->particles().empty() ||
+        (fluid.solver->usual_speed(world.workers) < quiet_speed && !fluid.solver->is_top_heavy(gravity));
     if (is_quiet && fluid.quiet_time == 0) fluid.quiet_height = height_of(*fluid.solver, world.settings.gravity);
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
     if (fluid.quiet_time >= time_to_sleep && has_sunk(world, fluid)) fluid.quiet_time = 0;
@@ -246,10 +251,12 @@ void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
 
 std::vector<FluidObstacle> obstacles_near(const FluidAccess& world, const FluidRecord& fluid,
                                           const std::vector<std::uint32_t>& slots) {
+    double density = 0;
+    for (const FluidProperties& liquid : fluid.solver->liquids().liquids()) density = std::max(density, liquid.density);
     std::vector<FluidObstacle> obstacles;
     obstacles.reserve(slots.size());
     for (const std::uint32_t slot : slots) {
-        obstacles.push_back(world.rigid.is_dynamic(slot) ? dynamic_obstacle(world, slot, fluid.definition.density)
+        obstacles.push_back(world.rigid.is_dynamic(slot) ? dynamic_obstacle(world, slot, density)
                                                          : fixed_obstacle(world, fluid, slot));
     }
     return obstacles;
