@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Grains that flow: what runs through the opening of a silo, and how far a column runs out whose wall vanishes. Laws and
-// sources: docs/physics/grains.md, "Flow".
+// Grains that flow: what runs through the opening of a silo, and how far a column runs out whose wall vanishes. Laws
+// and sources: docs/physics/grains.md, "Flow".
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace embody::physics {
 namespace {
 
-constexpr double gravity = 9.81, density = 2650, turn = 2 * std::numbers::pi;
+constexpr double gravity = 9.81, density = 2650, full_circle = 2 * std::numbers::pi;
 
 /// A round vessel of grains on a floor; lengths in diameters of a grain.
 struct Vessel {
@@ -106,7 +106,7 @@ MeshShape silo_mesh(const Vessel& vessel) {
     const double d = vessel.diameter;
     MeshShape mesh;
     for (std::uint32_t i = 0; i < sides; ++i) {
-        const double c = std::cos(turn * i / sides), s = std::sin(turn * i / sides);
+        const double c = std::cos(full_circle * i / sides), s = std::sin(full_circle * i / sides);
         const auto add = [&](double radius, double height) {
             mesh.positions.push_back(to_vec3f(Vec3{radius * c, height, radius * s} * d));
         };
@@ -158,7 +158,7 @@ double beverloo(const Vessel& vessel, double k) {
     return 0.58 * bulk * std::sqrt(gravity) * std::pow((vessel.opening - k) * vessel.diameter, 2.5);
 }
 
-constexpr double tolerance = 0.15;
+constexpr double flow_tolerance = 0.15;
 
 TEST(GrainSilo, FlowsAsBeverlooSaysAndDoesNotJam) {
     Random random(22);
@@ -168,9 +168,9 @@ TEST(GrainSilo, FlowsAsBeverlooSaysAndDoesNotJam) {
         vessel.radius = vessel.opening / 2 + 5;
         vessel.seed = static_cast<std::uint64_t>(i);
         const Discharge found = discharge(vessel);
-        EXPECT_GT(found.rate, (1 - tolerance) * beverloo(vessel, 2))
+        EXPECT_GT(found.rate, (1 - flow_tolerance) * beverloo(vessel, 2))
             << vessel.opening << " d of " << vessel.diameter << " m, " << vessel.friction_angle << " degrees";
-        EXPECT_LT(found.rate, (1 + tolerance) * beverloo(vessel, 1.4));
+        EXPECT_LT(found.rate, (1 + flow_tolerance) * beverloo(vessel, 1.4));
         EXPECT_LT(found.overlap, 0.15);
         RecordProperty("of_beverloo_k2_" + std::to_string(i), std::to_string(found.rate / beverloo(vessel, 2)));
         RecordProperty("overlap_" + std::to_string(i), std::to_string(found.overlap));
@@ -181,7 +181,7 @@ TEST(GrainSilo, FlowDoesNotDependOnTheFillingHeight) {
     Vessel vessel{.opening = 8};
     const double low = discharge(vessel).rate;
     vessel.height = 27;
-    EXPECT_NEAR(discharge(vessel).rate, low, tolerance * low);
+    EXPECT_NEAR(discharge(vessel).rate, low, flow_tolerance * low);
 }
 
 // G. Lube, H. Huppert, R. Sparks, M. Hallworth, J. Fluid Mech. 508, 2004: r∞/r0 of a column of height a r0.
@@ -199,7 +199,7 @@ TEST(GrainColumn, RunsOutAsMeasuredByLube) {
         std::vector<BodyHandle> walls;
         constexpr int sides = 36;
         for (int k = 0; k < sides; ++k) {
-            const Vec3 inwards{-std::cos(turn * k / sides), 0, -std::sin(turn * k / sides)};
+            const Vec3 inwards{-std::cos(full_circle * k / sides), 0, -std::sin(full_circle * k / sides)};
             walls.push_back(flow.add_static(PlaneShape{inwards, -r0}, {}, 0));
         }
         flow.fill();

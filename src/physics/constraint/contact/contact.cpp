@@ -121,8 +121,7 @@ void match_points(const Contact& old_contact, Contact& new_contact, const Contac
     // The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. The
     // bodies' last travel is short beside the region: the old anchor is taken where it was.
     // That of two balls lies between their centres all the time.
-    const Vec3 shift =
-        new_contact.are_balls ? Vec3{} : anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
+    const Vec3 shift = new_contact.are_balls ? Vec3{} : anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
     const Vec3 force = friction_force(old_contact, old_contact.friction);
     new_contact.friction = {
         static_cast<float>(dot(force, new_contact.tangent_1)), static_cast<float>(dot(force, tangent_2(new_contact))),

@@ -46,8 +46,8 @@ struct BatchHead {
         sticks = rolling + 3,              ///< mask
         round_a,                           ///< mask: the point of contact does not turn with the body
         round_b,
-        turns,      ///< mask: of two balls, whose axes turn with the line of their centres
-        apart,      ///< of those: from the centre of a to that of b when found, world: x y z
+        turns,  ///< mask: of two balls, whose axes turn with the line of their centres
+        apart,  ///< of those: from the centre of a to that of b when found, world: x y z
         size = apart + 3
     };
 };

@@ -70,7 +70,8 @@ EMBODY_WIDE_INLINE Wide turn_frame(float* batch, const Wide3& moved, WideMask tu
     const Wide distance_found = square_root(dot(found, found)), distance = square_root(dot(apart, apart));
     turns &= distance > zero;
     const Wide3 n = apart * inverse(distance);
-    const Wide3 across_1 = old.tangent_1 - n * dot(old.tangent_1, n), across_2 = old.tangent_2 - n * dot(old.tangent_2, n);
+    const Wide3 across_1 = old.tangent_1 - n * dot(old.tangent_1, n),
+                across_2 = old.tangent_2 - n * dot(old.tangent_2, n);
     const Wide3 across = select(dot(across_1, across_1) > min_across, across_1, across_2);
     const Wide3 tangent = across * inverse(square_root(dot(across, across)));
 
