@@ -259,12 +259,13 @@ void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& n
     for (const Manifold& manifold : worker.manifolds) {
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.rigid.motion, now.pose.seen));
         Contact& contact = worker.found.back();
-        contact.are_balls = memory.bodies[pair.a].is_ball && memory.bodies[pair.b].is_ball;
         if (has_material(contact)) {
             take_material(old.front(), contact);
         } else {
             set_material(contact, combine(a.definition.material, b.definition.material, world.rigid.surface_pairs));
         }
+        // Impulses that turn with the axes do work: what bounces keeps its plane. Test: RandomAccounts.
+        contact.are_balls = !contact.bounces && memory.bodies[pair.a].is_ball && memory.bodies[pair.b].is_ball;
     }
 
     // Both are sorted by key.
