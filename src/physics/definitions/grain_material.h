@@ -7,7 +7,7 @@
 namespace embody::physics {
 
 /// Surface of balls of this diameter (m) whose poured pile comes to rest at `friction_angle` (degrees), clamped to 7 …
-/// 49. Against one another they roll as measured, on other bodies not before they slide. How it was measured:
+/// 54. Against one another they roll as measured, on other bodies not before they slide. How it was measured:
 /// docs/physics/grains.md.
 Material grain_material(double friction_angle, double diameter);
 

@@ -95,10 +95,8 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     // A lever arm is a length of the softer of the two surfaces; the pair has the larger of the two.
     pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);
     const bool are_alike = a.friction_rolling_on_others > 0 && b.friction_rolling_on_others > 0;
-    if (!are_alike) {
-        pair.friction_rolling =
-            std::max({pair.friction_rolling, a.friction_rolling_on_others, b.friction_rolling_on_others});
-    }
+    if (!are_alike)
+        pair.friction_rolling_on_others = std::max(a.friction_rolling_on_others, b.friction_rolling_on_others);
     pair.friction_torsional = std::max(a.friction_torsional, b.friction_torsional);
     pair.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);
     return pair;

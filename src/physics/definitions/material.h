@@ -17,7 +17,7 @@ struct Material {
     double friction_static = 0.5;   ///< Coulomb coefficient at rest, 0 … 2, >= friction_dynamic
     double friction_dynamic = 0.5;  ///< Coulomb coefficient while sliding, 0 … 2
     double friction_rolling = 0;    ///< lever arm of the rolling resistance, m, 0 … 0.05
-    /// The lever arm against bodies that have none of these, where it is the larger one: grains, m, 0 … 0.05
+    /// The lever arm on faces of bodies that have none of these, where it is the larger one: grains, m, 0 … 0.05
     double friction_rolling_on_others = 0;
     double friction_torsional = 0;     ///< lever arm of the spinning resistance, m, 0 … 0.1
     double restitution = 0;            ///< Stronge's energetic coefficient, 0 … 1
@@ -30,7 +30,7 @@ struct Material {
 /// The error's `where` is the field.
 Result<void> validate(const Material& material);
 
-/// The coefficients of a pair; symmetric in the two.
+/// The coefficients of a pair; symmetric in the two. friction_rolling_on_others is 0 where it does not count.
 Material combine(const Material& a, const Material& b, const SurfacePairs& pairs);
 
 /// Coulomb's law of a pair: sticking friction is at most at_rest times the load, sliding friction is `sliding` times

@@ -97,13 +97,14 @@ void collide_two(const PlacedConvex& first, const PlacedConvex& second, double m
     }
     thread_local ContactRegion region;
     region.points.clear();
-    region.has_all_corners = false;
+    region.has_all_corners = region.is_on_edge = false;
     find_region(pair, margin, memory, region);
     if (region.points.empty()) return;
     const std::size_t before = manifolds.size();
     append_manifolds(region, pair.turn_a, origin + a.position, manifolds);
     for (std::size_t k = before; k < manifolds.size(); ++k) {
         manifolds[k].is_whole = region.has_all_corners && manifolds[k].is_whole;
+        manifolds[k].is_on_edge = region.is_on_edge;
         if (is_swapped) manifolds[k].normal = -manifolds[k].normal;
     }
 }

@@ -44,6 +44,7 @@ struct ContactRegion {
     std::vector<ManifoldPoint> points;
     bool is_proper = false;        ///< known to be four points at most, of which each adds area
     bool has_all_corners = false;  ///< of a face: no other corner of the two is within the margin
+    bool is_on_edge = false;       ///< as Manifold::is_on_edge
 
     ContactFeature reference, incident;
     std::vector<ClipCorner> sides, corners, clipped;

@@ -28,6 +28,8 @@ struct Manifold {
     /// No other corner of the two pieces is within the margin; a sphere meets one face or plane alone, and keeps to it
     /// until it has moved by whole_travel.
     bool is_whole = false;
+    /// A sphere meets an edge or a corner of what it touches.
+    bool is_on_edge = false;
     /// Whether the piece is of those that roll: spheres, capsules, cylinders and cones.
     bool a_is_round = false, b_is_round = false;
     std::array<ManifoldPoint, max_points> points;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "physics/collision/pairs/convex_pairs.h"
+#include "physics/collision/queries/ball_touch.h"
 #include "physics/collision/shapes/polytope_query.h"
 
 namespace embody::physics::collision {
@@ -168,6 +169,26 @@ bool stays_over_face(const Convex& convex, Vec3 p, const SurfaceDistance& gap) {
     return sides_within == 2;
 }
 
+// Whether the normal leans from every face, or side of a round shape, by more than the bend of a smooth surface.
+bool leans_over_edge(const Convex& convex, Vec3 normal) {
+    static const double smooth_cosine = std::cos(smooth_edge_angle);
+    const double radial = std::sqrt(normal.x * normal.x + normal.z * normal.z);
+    switch (convex.kind) {
+        case ConvexKind::sphere:
+        case ConvexKind::capsule:
+            return false;
+        case ConvexKind::cylinder:
+            return std::max(radial, std::fabs(normal.y)) < smooth_cosine;
+        case ConvexKind::cone: {
+            const ConeSlope slope = cone_slope(convex);
+            return std::max(radial * slope.radial + normal.y * slope.axial, -normal.y) < smooth_cosine;
+        }
+        case ConvexKind::polytope:
+            break;
+    }
+    return dot(convex.polytope.faces[support_face(convex, normal)].normal, normal) < smooth_cosine;
+}
+
 }  // namespace
 
 void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
@@ -182,6 +203,7 @@ void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin,
     }
     region.normal = -b.direction_to_frame(gap.normal);
     region.add(a.position + region.normal * radius, separation, 0);
+    region.is_on_edge = leans_over_edge(*b.shape, gap.normal);
     const bool is_flat = b.shape->kind == ConvexKind::polytope && stays_over_face(*b.shape, local, gap);
     memory.kind = PairMemory::Kind::nothing;
     if (is_flat) {

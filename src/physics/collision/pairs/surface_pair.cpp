@@ -104,10 +104,11 @@ void add_to_groups(const TriangleRegion& added, std::vector<NormalGroup>& groups
         groups[g].region.points.clear();
         groups[g].region.normal = region.normal;
         groups[g].lowest_triangle = added.triangle;
-        groups[g].has_all_corners = true;
+        groups[g].has_all_corners = groups[g].region.is_on_edge = true;
         ++count;
     }
     groups[g].has_all_corners = groups[g].has_all_corners && added.has_all_corners;
+    groups[g].region.is_on_edge = groups[g].region.is_on_edge && region.is_on_edge;
     groups[g].region.points.insert(groups[g].region.points.end(), region.points.begin(), region.points.end());
 }
 
@@ -137,6 +138,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         triangle.index = index;
         triangle.half_dihedrals = placed.surface.half_dihedrals(index);
         region.points.clear();
+        region.is_on_edge = false;
         bool has_all_corners = false;
         if (probe.is_polytope()) {
             has_all_corners = collide_polytope_triangle(piece.convex, triangle, margin, region);
@@ -154,6 +156,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         append_manifolds(groups[g].region, own.rotation, own.position, manifolds);
         for (std::size_t k = before; k < manifolds.size(); ++k) {
             manifolds[k].is_whole = groups[g].has_all_corners && manifolds[k].is_whole;
+            manifolds[k].is_on_edge = groups[g].region.is_on_edge;
             manifolds[k].piece_a = piece_index;
             manifolds[k].piece_b = groups[g].lowest_triangle;
         }

@@ -2,10 +2,12 @@
 // Convexes with round sides against one triangle of a surface, in the convex's frame: a sphere by the nearest point;
 // others along the triangle's own normal, where that is the best one, else by GJK and EPA as any pair of convexes.
 #include <algorithm>
+#include <cmath>
 
 #include "physics/collision/pairs/convex_pairs.h"
 #include "physics/collision/pairs/round_features.h"
 #include "physics/collision/pairs/triangle_pairs.h"
+#include "physics/collision/queries/ball_touch.h"
 
 namespace embody::physics::collision {
 
@@ -20,6 +22,8 @@ void collide_sphere_triangle(double radius, const PlacedTriangle& t, double marg
     if (t.is_flat_to(outwards)) outwards = t.normal;
     region.normal = -outwards;
     region.add(outwards * -radius, gap - radius, 0);
+    static const double smooth_cosine = std::cos(smooth_edge_angle);
+    region.is_on_edge = dot(outwards, t.normal) < smooth_cosine;
 }
 
 // Tests against the plane of the triangle, clipped to the triangle.

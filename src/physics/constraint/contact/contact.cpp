@@ -37,6 +37,7 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
     contact.count = static_cast<std::uint8_t>(manifold.count);
     contact.a_is_round = manifold.a_is_round;
     contact.b_is_round = manifold.b_is_round;
+    contact.is_on_edge = manifold.is_on_edge;
     const double fraction = place_in_gap(manifold.a_is_round, manifold.b_is_round);
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
@@ -57,7 +58,9 @@ void set_material(Contact& contact, const Material& material) {
     contact.friction_static = static_cast<float>(material.friction_static);
     contact.friction_dynamic = static_cast<float>(material.friction_dynamic);
     contact.friction_torsional = static_cast<float>(material.friction_torsional);
-    contact.friction_rolling = static_cast<float>(material.friction_rolling);
+    // On an edge nothing carries the corners that a ball stands for.
+    const double on_face = std::max(material.friction_rolling, material.friction_rolling_on_others);
+    contact.friction_rolling = static_cast<float>(contact.is_on_edge ? material.friction_rolling : on_face);
     contact.bounces = material.restitution > 0;
 }
 
@@ -117,7 +120,8 @@ void match_points(const Contact& old_contact, Contact& new_contact, const Contac
 
     // The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. The
     // bodies' last travel is short beside the region: the old anchor is taken where it was.
-    const Vec3 shift = anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
+    // That of two balls lies between their centres all the time.
+    const Vec3 shift = new_contact.are_balls ? Vec3{} : anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
     const Vec3 force = friction_force(old_contact, old_contact.friction);
     new_contact.friction = {
         static_cast<float>(dot(force, new_contact.tangent_1)), static_cast<float>(dot(force, tangent_2(new_contact))),
@@ -243,6 +247,10 @@ Vec3 motion_of(const BodyState& body, Vec3 arm, bool is_round) {
 }  // namespace
 
 double current_separation(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
+    if (contact.are_balls) {
+        const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
+        return point.separation + distance(a.center, b.center) - distance(a.start_center, b.start_center);
+    }
     const Vec3 move_a = motion_of(bodies[contact.a], point.arm_a, contact.a_is_round);
     const Vec3 move_b = motion_of(bodies[contact.b], point.arm_b, contact.b_is_round);
     return point.separation + dot(contact.normal, move_b - move_a);

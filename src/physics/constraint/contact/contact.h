@@ -49,6 +49,8 @@ struct alignas(64) Contact {
     bool sticks : 1 = true;                               ///< holds by static friction until its limit is left
     bool b_is_larger : 1 = false;                         ///< see SeenFrom
     bool a_is_round : 1 = false, b_is_round : 1 = false;  ///< rolls: the point of contact does not turn with the body
+    bool is_on_edge : 1 = false;                          ///< a ball on an edge or a corner
+    bool are_balls : 1 = false;                           ///< both, and do not bounce: turns with the centres
     bool bounces : 1 = false;                             ///< has a restitution
     bool was_touching : 1 = false;                        ///< in the last step
     bool was_loaded : 1 = false;                          ///< pressed in the last step

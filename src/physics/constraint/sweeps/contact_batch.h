@@ -46,7 +46,9 @@ struct BatchHead {
         sticks = rolling + 3,              ///< mask
         round_a,                           ///< mask: the point of contact does not turn with the body
         round_b,
-        size
+        turns,  ///< mask: of two balls, whose axes turn with the line of their centres
+        apart,  ///< of those: from the centre of a to that of b when found, world: x y z
+        size = apart + 3
     };
 };
 
@@ -81,7 +83,7 @@ struct ContactRow {
 
 /// What a lane's contact is, in bits.
 struct LaneBit {
-    enum Bit : int { sticks = 1, round_a = 2, round_b = 4, first_point = 8 /* then the other points' */ };
+    enum Bit : int { sticks = 1, round_a = 2, round_b = 4, turns = 8, first_point = 16 /* then the other points' */ };
 };
 
 /// What a batch is filled from. Lanes without a contact have no bits and meet the rows of others.
@@ -102,6 +104,7 @@ constexpr int batch_floats(int lanes, int points) { return lanes * (BatchHead::s
 struct ContactSweep {
     float* velocity = nullptr;               ///< rows of eight floats: change of v and of ω since the step began
     const float* motion = nullptr;           ///< rows: displacement, turn (x y z w)
+    const float* start = nullptr;            ///< rows: v, ω when the step began
     float substep = 0, inverse_substep = 0;  ///< s, 1/s
     float time = 0;                          ///< of the substep's end in the step, s
     float bias_rate = 0, mass_scale = 1, impulse_scale = 0;
@@ -129,7 +132,7 @@ struct ContactKernels {
     void (*warm_start)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// Before the drift: takes position errors out as well.
     void (*solve_positions)(float* batch, int points, const ContactSweep& sweep) = nullptr;
-    /// Gaps from the bodies' motion; before the first substep.
+    /// Gaps, and axes between balls, from the bodies' motion; before the first substep.
     void (*separate)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// After the drift: velocities alone.
     void (*solve_velocities)(float* batch, int points, const ContactSweep& sweep) = nullptr;

@@ -60,6 +60,59 @@ EMBODY_WIDE_INLINE Wide3 turned_back(const Wide row[row_floats], const Wide3& n,
     return select(is_round, by_tilt, by_turn);
 }
 
+// The axes of two balls that moved by so much relative to each other turn with the line of their centres, and the
+// tangents as little as they can; returns the change of the gap. Frozen for the step, the planes between grains that
+// pass each other would stand in the way: docs/physics/grains.md.
+EMBODY_WIDE_INLINE Wide turn_frame(float* batch, const Wide3& moved, WideMask turns, const ContactSweep& sweep) {
+    const Wide zero{}, half = broadcast(0.5F), min_across = broadcast(0.01F);  // squared: below it, a direction is none
+    const Frame old = Frame::of(batch);
+    const Wide3 found = quantity_3(batch, BatchHead::apart), apart = found + moved;
+    const Wide distance_found = square_root(dot(found, found)), distance = square_root(dot(apart, apart));
+    turns &= distance > zero;
+    const Wide3 n = apart * inverse(distance);
+    const Wide3 across_1 = old.tangent_1 - n * dot(old.tangent_1, n),
+                across_2 = old.tangent_2 - n * dot(old.tangent_2, n);
+    const Wide3 across = select(dot(across_1, across_1) > min_across, across_1, across_2);
+    const Wide3 tangent = across * inverse(square_root(dot(across, across)));
+
+    // |c + d| − |c| without the digits that a difference of lengths would lose.
+    const Wide opening = dot(found + apart, moved) * inverse(distance_found + distance);
+    const Wide reach_a = dot(old.arm_a, old.normal), old_distance = reach_a - dot(old.arm_b, old.normal);
+    const Wide3 arm_a = n * (reach_a + (distance - old_distance) * half);
+    const Frame f{select(turns, n, old.normal), select(turns, tangent, old.tangent_1),
+                  select(turns, cross(n, tangent), old.tangent_2), select(turns, arm_a, old.arm_a),
+                  select(turns, arm_a - apart, old.arm_b)};
+    store_3(batch + BatchHead::normal * lanes, f.normal);
+    store_3(batch + BatchHead::tangent_1 * lanes, f.tangent_1);
+    store_3(batch + BatchHead::tangent_2 * lanes, f.tangent_2);
+    store_3(batch + BatchHead::arm_a * lanes, f.arm_a);
+    store_3(batch + BatchHead::arm_b * lanes, f.arm_b);
+    fill_start_motion(batch, sweep.start, f);
+    return opening;
+}
+
+// What the contact did in this substep along its old axes it did along the new ones: so the bodies have the impulses
+// that the batch holds.
+EMBODY_WIDE_INLINE void turn_impulses(float* batch, const Frame& old, const ContactSweep& sweep) {
+    const Wide3 friction = quantity_3(batch, BatchHead::friction);
+    const Wide load = quantity(point_of(batch, 0), BatchPoint::impulse);
+    const WideMask changes = load_mask(batch + BatchHead::turns * lanes) & (load > Wide{});
+    if (!any(changes)) return;
+    const Inertia m = Inertia::of(batch);
+    const Velocities before = Velocities::take(batch, sweep);
+    Velocities v = before;
+    const auto add = [&](const Frame& f, const Wide3& by, Wide along) {
+        apply(v, m, f.arm_a, f.arm_b, f.normal * along + f.tangent_1 * by.x + f.tangent_2 * by.y, f.normal * by.z);
+    };
+    add(old, friction * broadcast(-1), -load);
+    add(Frame::of(batch), friction, load);
+    for (int i = 0; i < row_floats; ++i) {
+        v.a[i] = select(changes, v.a[i], before.a[i]);
+        v.b[i] = select(changes, v.b[i], before.b[i]);
+    }
+    v.put_back(batch, sweep);
+}
+
 void separate(float* batch, int points, const ContactSweep& sweep) {
     Wide a[row_floats], b[row_floats];
     gather_rows(sweep.motion, Velocities::rows_of(batch, BatchHead::body_a), a);
@@ -81,6 +134,14 @@ void separate(float* batch, int points, const ContactSweep& sweep) {
             middle + (tilt_1 * quantity(point, BatchPoint::along_1) + tilt_2 * quantity(point, BatchPoint::along_2));
         store(point + BatchPoint::separation * lanes, quantity(point, BatchPoint::separation_found) + change);
     }
+
+    const WideMask turns = load_mask(batch + BatchHead::turns * lanes);
+    if (!any(turns)) return;
+    const Wide opening = turn_frame(batch, {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, turns, sweep);
+    float* point = point_of(batch, 0);
+    const Wide gap = quantity(point, BatchPoint::separation);
+    store(point + BatchPoint::separation * lanes,
+          select(turns, quantity(point, BatchPoint::separation_found) + opening, gap));
 }
 
 /// Motion of b relative to a at the anchor, in the axes of the region.
@@ -362,7 +423,11 @@ EMBODY_WIDE_INLINE void add_to_totals(float* batch, int points) {
 }
 
 void solve_velocities(float* batch, int points, const ContactSweep& sweep) {
-    if (sweep.is_first) separate(batch, points, sweep);
+    if (sweep.is_first) {
+        const Frame old = Frame::of(batch);
+        separate(batch, points, sweep);
+        turn_impulses(batch, old, sweep);
+    }
     solve<Sweep::velocities>(batch, points, sweep);
     if (sweep.is_last) add_to_totals(batch, points);
 }

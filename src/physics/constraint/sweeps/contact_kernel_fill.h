@@ -210,6 +210,18 @@ EMBODY_WIDE_INLINE WideMask lanes_with(const std::int32_t* bits, int bit) {
     return (all & bit) != 0;
 }
 
+// The bodies' relative motion at the step's start, along the axes of a frame.
+EMBODY_WIDE_INLINE void fill_start_motion(float* batch, const float* start, const Frame& f) {
+    Velocities v;
+    gather_rows(start, Velocities::rows_of(batch, BatchHead::body_a), v.a);
+    gather_rows(start, Velocities::rows_of(batch, BatchHead::body_b), v.b);
+    const Wide3 velocity = v.relative(f.arm_a, f.arm_b), spin = v.angular_b() - v.angular_a();
+    store_3(batch + BatchHead::start_speed * lanes,
+            {dot(velocity, f.normal), dot(velocity, f.tangent_1), dot(velocity, f.tangent_2)});
+    store_3(batch + BatchHead::start_spin * lanes,
+            {dot(spin, f.tangent_1), dot(spin, f.tangent_2), dot(spin, f.normal)});
+}
+
 // The region's frame, and its motion at the step's start.
 EMBODY_WIDE_INLINE void fill_frame(float* batch, const BatchSource& source, const Wide3& arm_a, const Wide3& arm_b,
                                    const Wide frame_row[row_floats]) {
@@ -220,12 +232,7 @@ EMBODY_WIDE_INLINE void fill_frame(float* batch, const BatchSource& source, cons
     store_3(batch + BatchHead::tangent_2 * lanes, t2);
     store_3(batch + BatchHead::arm_a * lanes, arm_a);
     store_3(batch + BatchHead::arm_b * lanes, arm_b);
-    Velocities v;
-    gather_rows(source.start, source.body_a, v.a);
-    gather_rows(source.start, source.body_b, v.b);
-    const Wide3 velocity = v.relative(arm_a, arm_b), spin = v.angular_b() - v.angular_a();
-    store_3(batch + BatchHead::start_speed * lanes, {dot(velocity, n), dot(velocity, t1), dot(velocity, t2)});
-    store_3(batch + BatchHead::start_spin * lanes, {dot(spin, t1), dot(spin, t2), dot(spin, n)});
+    fill_start_motion(batch, source.start, Frame::of(batch));
 }
 
 EMBODY_WIDE_INLINE void fill_inertia(float* batch, const float* inertia, const std::int32_t* rows, int mass,
@@ -307,6 +314,8 @@ void fill(float* batch, int points, const BatchSource& source) {
     store_mask(batch + BatchHead::sticks * lanes, lanes_with(source.bits, LaneBit::sticks));
     store_mask(batch + BatchHead::round_a * lanes, lanes_with(source.bits, LaneBit::round_a));
     store_mask(batch + BatchHead::round_b * lanes, lanes_with(source.bits, LaneBit::round_b));
+    store_mask(batch + BatchHead::turns * lanes, lanes_with(source.bits, LaneBit::turns));
+    store_3(batch + BatchHead::apart * lanes, arm_a - arm_b);
 
     // The bodies.
     fill_inertia(batch, source.inertia, source.body_a, BatchHead::inverse_mass_a, BatchHead::inverse_inertia_a);

@@ -35,7 +35,8 @@ static_assert(sizeof(Contact) == ContactRow::size * row_bytes);
 std::int32_t lane_bits(const Contact& contact) {
     const std::int32_t points = (1 << contact.count) - 1;
     return (contact.sticks ? LaneBit::sticks : 0) | (contact.a_is_round ? LaneBit::round_a : 0) |
-           (contact.b_is_round ? LaneBit::round_b : 0) | points * LaneBit::first_point;
+           (contact.b_is_round ? LaneBit::round_b : 0) | (contact.are_balls ? LaneBit::turns : 0) |
+           points * LaneBit::first_point;
 }
 
 bool may_wait(const Contact& contact) {
@@ -304,6 +305,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
     for (std::vector<std::int32_t>* lanes : {&contact_row_, &body_a_, &body_b_, &bits_}) lanes->resize(used_lanes_);
     const ContactSweep sweep{.velocity = velocity_[0].value,
                              .motion = motion_[0].value,
+                             .start = start_[0].value,
                              .substep = to_float(substep_),
                              .inverse_substep = to_float(1 / substep_),
                              .bias_rate = to_float(softness.bias_rate),
@@ -380,6 +382,11 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, co
     contact.friction_total = read_friction(BatchHead::friction_total);
     contact.rolling = {read(BatchHead::rolling), read(BatchHead::rolling + 1), read(BatchHead::rolling + 2)};
     contact.sticks = std::bit_cast<std::uint32_t>(read(BatchHead::sticks)) != 0;
+    if (contact.are_balls) {
+        const auto read_axis = [&](int first) { return Vec3f{read(first), read(first + 1), read(first + 2)}; };
+        contact.normal = read_axis(BatchHead::normal);
+        contact.tangent_1 = read_axis(BatchHead::tangent_1);
+    }
     bool is_pressed = false, is_deep = false;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];

@@ -16,8 +16,9 @@ struct CollisionSettings {
     /// Settings.AreNoticed.
     double contact_margin = 0.005;
     /// The same gap for balls, in radii: their one point of contact does not jump, and with an absolute gap most
-    /// contacts of grains of millimetres would be with grains that they do not touch. Test: Settings.AreNoticed.
-    double ball_margin_fraction = 0.1;
+    /// contacts of grains of millimetres would be with grains that they do not touch. Grains that fall together 0.1
+    /// diameters apart must see each other before the first of them is stopped. Test: Settings.AreNoticed, GrainSilo.
+    double ball_margin_fraction = 0.2;
     /// Travel of a pair up to which its contacts follow it, m: they hold each corner within contact_margin plus this.
     /// Test: Settings.AreNoticed.
     double follow_travel = 0.0025;

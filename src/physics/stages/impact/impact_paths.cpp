@@ -75,10 +75,12 @@ bool ImpactPaths::hits_pile(const Contact& contact) const {
 
 // Classification (paper, eq. 4): slower contacts rest. Loaded contacts and contacts that do not bounce must be far
 // faster to count as a collision: the contact solver stops them as well as an impact would. If they also touch already,
-// there is no impact to come.
+// there is no impact to come. Nor is there between balls of a pile that do not bounce: their contact turns with their
+// centres, so that the substeps stop them where they meet, and nobody is put back along its path into its neighbours.
 double ImpactPaths::slowest_speed(const Contact& contact) const {
     const bool can_bounce = bounces(contact);
     if (contact.was_touching && !can_bounce) return never;
+    if (contact.are_balls && !can_bounce && hits_pile(contact)) return never;
     const double acceleration = dot(contact.normal, world_.settings.gravity);
     const double slowest =
         std::max(settings_.min_impact_speed, settings_.min_impact_substeps * std::fabs(acceleration) * substep_);

@@ -43,6 +43,9 @@ void leave_to_rolling(ContactSummary& summary) {
 }
 
 void list_candidates(const RollAccess& world, BallMemory& memory) {
+    // Of one ball with the ground. Reserved, as a ball may first touch so many long after the start. Test:
+    // SteadyAllocation.
+    constexpr std::size_t usual_contacts = 8;
     memory.count = 0;
     for (const std::uint32_t body : world.activity.awake) {
         if (!may_roll(world, body)) continue;
@@ -53,6 +56,7 @@ void list_candidates(const RollAccess& world, BallMemory& memory) {
         candidate.is_free = true;
         candidate.has_rolled = candidate.has_company = false;
         candidate.contacts.clear();
+        candidate.contacts.reserve(usual_contacts);
         candidate.parent = static_cast<std::uint32_t>(memory.count++);
         memory.of_body[body] = static_cast<std::uint32_t>(memory.count);
     }

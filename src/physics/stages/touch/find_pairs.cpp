@@ -48,6 +48,9 @@ Bounds close_turned_bounds(const PairsAccess& world, std::uint32_t body, const B
 // Lists which of a range of the awake bodies have left their bounds, and the new bounds that they need.
 void list_leaving(const PairsAccess& world, IndexRange range, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
+    // Two balls' contacts are looked for this far ahead, in radii; each has half of it. Else it would be chance, and
+    // the frame's motion, how early they are found: bounds are kept until the bodies leave them. Test: MovingFrames.
+    const double ball_margin = world.settings.solver.collision.ball_margin_fraction / 2;
     for (std::size_t i = range.first; i < range.last; ++i) {
         const std::uint32_t body = world.activity.awake[i];
         TouchBody& touch = world.contacts.touch.bodies[body];
@@ -59,7 +62,8 @@ void list_leaving(const PairsAccess& world, IndexRange range, std::vector<Leavin
             world.rigid.motion[body].linear_velocity * dt + world.rigid.constants[body].acceleration * (dt * dt / 2);
 
         // What the body may meet on its path must be a pair before it gets there.
-        const Bounds now = record.shape->bounds(world.rigid.pose(body));
+        Bounds now = record.shape->bounds(world.rigid.pose(body));
+        if (record.is_ball) now = enlarged(now, ball_margin * touch.size);
         const double angle = record.is_ball ? 0 : length(world.rigid.motion[body].angular_velocity) * dt;
         Bounds wanted = angle > 0 ? turned_bounds(world, body, now, angle) : now;
         if (world.contacts.broad_phase.holds(body, wanted, motion)) continue;

@@ -251,15 +251,21 @@ void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& n
     }
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
-    const bool has_material = is_known && !old.empty();
-    const Material material =
-        has_material ? Material{} : combine(a.definition.material, b.definition.material, world.rigid.surface_pairs);
+    const auto has_material = [&](const Contact& contact) {
+        return is_known && !old.empty() && old.front().is_on_edge == contact.is_on_edge;
+    };
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.rigid.motion, now.pose.seen));
         Contact& contact = worker.found.back();
-        has_material ? take_material(old.front(), contact) : set_material(contact, material);
+        if (has_material(contact)) {
+            take_material(old.front(), contact);
+        } else {
+            set_material(contact, combine(a.definition.material, b.definition.material, world.rigid.surface_pairs));
+        }
+        // Impulses that turn with the axes do work: what bounces keeps its plane. Test: RandomAccounts.
+        contact.are_balls = !contact.bounces && memory.bodies[pair.a].is_ball && memory.bodies[pair.b].is_ball;
     }
 
     // Both are sorted by key.
