@@ -160,6 +160,18 @@ Result<double> spread(const AttributeSet& set, const char* name, double amount, 
                      " " + range.unit};
 }
 
+Result<physics::Brittleness> brittleness_from(const AttributeSet& set) {
+    // A limit of 0: the slightest blow.
+    constexpr double min_limit = 1e-9;
+    const physics::Brittleness brittleness{
+        .break_impulse = std::max(number_or_standard(set, "break_impulse"), min_limit),
+        .break_energy = std::max(number_or_standard(set, "break_energy"), min_limit),
+        .fracture_energy = number_or_standard(set, "fracture_energy"),
+        .max_pieces = static_cast<int>(number_or_standard(set, "break_pieces"))};
+    if (validate(brittleness)) return brittleness;
+    return Error{"breaks", "needs a breaking impulse or a breaking energy", "set break_impulse or break_energy"};
+}
+
 double area_of(const SheetMesh& sheet) {
     double area = 0;
     for (const auto& [a, b, c] : sheet.triangles)
@@ -186,6 +198,11 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
     body.gravity_factor = number_or_standard(attributes, "gravity_factor");
     body.sleep_energy_per_mass = number_or_standard(attributes, "sleep_energy_per_mass");
     body.continuous = attributes.truth("continuous", false);
+    if (attributes.truth("breaks", false) && body.kind == physics::BodyKind::dynamic_body) {
+        const auto brittleness = brittleness_from(attributes);
+        if (!brittleness) return brittleness.error();
+        body.brittleness = *brittleness;
+    }
     body.collision_group = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_group"));
     body.collision_mask = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_mask"));
     return body;

@@ -50,6 +50,10 @@ Result<void> validate(const BodyDefinition& definition) {
     if (auto result = validate(d.material); !result) {
         return Error{"material." + result.error().where, result.error().why, result.error().remedy};
     }
+    if (d.brittleness) {
+        if (auto result = validate(*d.brittleness); !result)
+            return Error{"brittleness." + result.error().where, result.error().why, result.error().remedy};
+    }
     return first_error(
         check_vector("position", d.position, largest_coordinate, "m"), check_rotation("rotation", d.rotation),
         check_vector("linear_velocity", d.linear_velocity, largest_linear_speed, "m/s"),

@@ -6,6 +6,7 @@
 
 #include "foundation/result.h"
 #include "math/transform.h"
+#include "physics/definitions/brittleness.h"
 #include "physics/definitions/handles.h"
 #include "physics/definitions/material.h"
 
@@ -50,6 +51,7 @@ struct BodyDefinition {
     bool continuous = false;            ///< sweep fast motion against everything, not only as the step's margin allows
     std::uint32_t collision_group = 1;  ///< bits
     std::uint32_t collision_mask = 0xFFFFFFFFu;  ///< bodies a and b collide iff a.group & b.mask and b.group & a.mask
+    std::optional<Brittleness> brittleness;      ///< of a dynamic body with a shape: blows break it; none: nothing does
     std::uint64_t user_data = 0;                 ///< handed back in events; the library never reads it
 };
 

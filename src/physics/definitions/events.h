@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "physics/definitions/body_definition.h"
 
@@ -31,6 +32,18 @@ struct RopeBreakEvent {
     std::uint32_t segment = 0;  ///< between its nodes of this number and the next
     double tension = 0;         ///< that broke it, N
     Vec3 position;              ///< of the middle of the segment, world, m
+};
+
+/// A brittle body broke at the end of the last step: the pieces are in the world in its place.
+struct BodyBreakEvent {
+    BodyHandle body;  ///< is gone
+    std::uint64_t user_data = 0;
+    Vec3 position;          ///< of the blow, world, m
+    double impulse = 0;     ///< of the blow, N s
+    double energy = 0;      ///< of the blow, J
+    double crack_area = 0;  ///< between the pieces, m²; paid with the fracture energy of each m²
+    /// Their shapes are theirs alone: destroy a piece's shape after the piece.
+    std::vector<BodyHandle> pieces;
 };
 
 /// One point of a contact region after the step.

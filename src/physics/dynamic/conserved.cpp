@@ -3,14 +3,10 @@
 
 namespace embody::physics::dynamic {
 
-namespace {
-
 Vec3 spin_momentum(const BodyState& state, const BodyConstants& constants) {
     const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
     return rotate(state.rotation, constants.inertia * omega);
 }
-
-}  // namespace
 
 double kinetic_energy(const BodyState& state, const BodyConstants& constants) {
     return 0.5 * constants.mass * length_squared(state.linear_velocity) +

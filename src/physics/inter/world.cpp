@@ -63,6 +63,11 @@ Result<void> World::destroy_shape(ShapeHandle shape) {
     return {};
 }
 
+const ShapeDefinition* World::shape(ShapeHandle shape) const {
+    const ShapeRecord* record = state_->rigid.shapes.find(shape);
+    return record ? &record->shape->definition() : nullptr;
+}
+
 std::optional<double> World::volume(ShapeHandle shape) const {
     const ShapeRecord* record = state_->rigid.shapes.find(shape);
     if (!record) return std::nullopt;
@@ -134,6 +139,7 @@ double World::joint_coordinate(JointHandle joint) const {
 
 const StepReport& World::step() {
     step::step(*state_);
+    replace_broken_bodies();
     return state_->report;
 }
 
@@ -151,6 +157,7 @@ void World::set_clock(double time, std::uint64_t step) {
 
 std::span<const ContactEvent> World::contact_events() const { return state_->events.contacts; }
 std::span<const RopeBreakEvent> World::rope_break_events() const { return state_->events.rope_breaks; }
+std::span<const BodyBreakEvent> World::body_break_events() const { return state_->events.body_breaks; }
 std::span<const SleepEvent> World::sleep_events() const { return state_->events.sleep; }
 
 std::vector<ContactView> World::contacts() const {

@@ -50,6 +50,8 @@ public:
     Result<ShapeHandle> create_shape(const ShapeDefinition& definition);
     /// Refused while a body uses it.
     Result<void> destroy_shape(ShapeHandle shape);
+    /// Its definition; nullptr if stale. Valid until it is destroyed.
+    [[nodiscard]] const ShapeDefinition* shape(ShapeHandle shape) const;
     /// Unit density; zero volume for static-only shapes.
     [[nodiscard]] std::optional<double> volume(ShapeHandle shape) const;
 
@@ -183,6 +185,7 @@ public:
     [[nodiscard]] std::span<const ContactEvent> contact_events() const;
     [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
     [[nodiscard]] std::span<const RopeBreakEvent> rope_break_events() const;
+    [[nodiscard]] std::span<const BodyBreakEvent> body_break_events() const;
     [[nodiscard]] std::vector<ContactView> contacts() const;
     [[nodiscard]] Conserved conserved() const;
     /// Draws what the options select (debug_draw.h) in its present state; changes nothing.
@@ -212,6 +215,7 @@ public:
 
 private:
     World();
+    void replace_broken_bodies();
     std::unique_ptr<state::WorldState> state_;
 };
 

@@ -77,6 +77,7 @@ Result<void> World::destroy_bodies(std::span<const BodyHandle> bodies) {
     for (const BodyHandle body : bodies) {
         change_users(*state_, state_->rigid.record(body.index).definition.shape, -1);
         state_->rigid.motion[body.index] = {};
+        state_->rigid.brittle.erase(body.index);
         state_->rigid.bodies.remove(body);
     }
     return {};

@@ -104,6 +104,14 @@ SleepAccess::SleepAccess(WorldState& world)
       activity(world.activity),
       events(world.events) {}
 
+FractureAccess::FractureAccess(WorldState& world)
+    : joints(world.joints),
+      contacts(world.contacts),
+      activity(world.activity),
+      report(world.report),
+      rigid(world.rigid),
+      fracture(world.fracture) {}
+
 ReportAccess::ReportAccess(WorldState& world)
     : contacts(world.contacts),
       activity(world.activity),

@@ -24,6 +24,7 @@ struct ContactState;
 struct DeformableState;
 struct EventState;
 struct FluidState;
+struct FractureState;
 struct ImpactMemory;
 struct JointState;
 struct RigidState;
@@ -178,6 +179,17 @@ struct SleepAccess {
     ContactState& contacts;
     ActivityState& activity;
     EventState& events;
+};
+
+/// Brittle bodies that blows break.
+struct FractureAccess {
+    explicit FractureAccess(WorldState& world);
+    const JointState& joints;
+    const ContactState& contacts;
+    const ActivityState& activity;
+    const StepReport& report;
+    RigidState& rigid;
+    FractureState& fracture;
 };
 
 /// The report of a step once it is over.

@@ -6,6 +6,7 @@ namespace state {}
 namespace optimization {}
 namespace deformable {}
 namespace fluid {}
+namespace fracture {}
 namespace constraint {}
 namespace collision {}
 namespace dynamic {}
@@ -19,6 +20,7 @@ using namespace state;
 using namespace optimization;
 using namespace deformable;
 using namespace fluid;
+using namespace fracture;
 using namespace constraint;
 using namespace collision;
 using namespace dynamic;

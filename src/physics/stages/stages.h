@@ -19,6 +19,10 @@ void stop_tunnelling(const ContinuousAccess& world);
 void advance_deformables(const DeformableAccess& world);
 void put_to_sleep(const SleepAccess& world);
 void settle_fluids(const FluidAccess& world);
+/// Before a step and after it: which brittle bodies its blows break, and into what. Broken bodies are replaced by the
+/// face.
+void note_motion(const FractureAccess& world);
+void plan_breaks(const FractureAccess& world);
 
 /// Slows awake bodies to the settings' greatest speeds.
 void limit_speeds(const SpeedAccess& world);

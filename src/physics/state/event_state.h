@@ -21,6 +21,7 @@ struct EventState {
     std::vector<TouchingPair> touching_now;   // report: memory only
     std::vector<ContactEvent> contacts;       // report
     std::vector<RopeBreakEvent> rope_breaks;  // deformables
+    std::vector<BodyBreakEvent> body_breaks;  // face
     std::vector<SleepEvent> sleep;            // wake, sleep
 };
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "foundation/handle_table.h"
@@ -43,6 +44,7 @@ struct RigidState {
     SurfacePairs surface_pairs;                        // face
     HandleTable<struct ShapeTag, ShapeRecord> shapes;  // face
     HandleTable<struct BodyTag, BodyRecord> bodies;    // face
+    std::set<std::uint32_t> brittle;                   // face: slots of bodies that blows may break
     std::uint32_t last_body_version = 0;               // face
     std::vector<BodyState> motion;                     // impact, substeps, continuous
     std::vector<BodyConstants> constants;              // face; acceleration, torque: wake

@@ -13,6 +13,7 @@
 #include "physics/state/deformable_state.h"
 #include "physics/state/event_state.h"
 #include "physics/state/fluid_state.h"
+#include "physics/state/fracture_state.h"
 #include "physics/state/impact_memory.h"
 #include "physics/state/joint_state.h"
 #include "physics/state/ledger.h"
@@ -41,6 +42,7 @@ struct WorldState {
     ImpactMemory impacts;
     BallMemory balls;
     SubstepMemory substeps;
+    FractureState fracture;
 
     // Events and reports of a step.
     EventState events;

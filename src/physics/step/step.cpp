@@ -63,6 +63,7 @@ void step(WorldState& world) {
     world.report = {.step = world.report.step + 1,
                     .time = world.report.time + world.settings.time_step,
                     .workers = world.workers->workers()};
+    note_motion(FractureAccess(world));
     if (world.ledger) world.ledger->begin();
     run(world, StepStage::wake, "wake bodies", wake_bodies);  // apply commands, wake touched islands
     run(world, StepStage::fluids, "advance fluids",
@@ -74,6 +75,10 @@ void step(WorldState& world) {
     {
         EMBODY_ZONE("write report");
         write_report(ReportAccess(world));  // events, counts
+    }
+    {
+        EMBODY_ZONE("break bodies");
+        plan_breaks(FractureAccess(world));  // brittle bodies whose blows were too hard
     }
     if (world.ledger) world.report.account = world.ledger->finish();
     world.report.milliseconds = zone.finish();

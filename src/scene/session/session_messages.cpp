@@ -95,6 +95,12 @@ void SessionState::tell_step() {
             tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
+    // Pieces have the name of the thing, and may break again: the first message is enough.
+    for (const ThingBroke& broke : simulation->broke())
+        if (told_problems.insert(broke.name + " broke into pieces").second)
+            tell_message("info", broke.name + " broke into " + std::to_string(broke.pieces) + " pieces by a blow of " +
+                                     attributes::short_number(broke.impulse) + " N s.");
+
     // Each problem is told once in a run.
     for (const Error& problem : simulation->problems())
         if (told_problems.insert(problem.message()).second) tell_message("warning", problem.message());

@@ -128,6 +128,7 @@ const physics::StepReport& Simulation::step() {
     State& state = *state_;
     state.spawned.clear();
     state.despawned.clear();
+    state.broke.clear();
     state.actions->fired.clear();
     state.actions->problems.clear();
     state.actions->pause_requested = false;
@@ -137,6 +138,7 @@ const physics::StepReport& Simulation::step() {
     state.apply_timed_forces();
     state.liquids.push(state.world->settings().time_step);
     const physics::StepReport& report = state.world->step();
+    state.take_pieces();
     state.liquids.separate_distant();
     const auto sleeps = state.world->sleep_events();
     state.actions->after_step(contacts_between_entities(*state.world), {sleeps.begin(), sleeps.end()});
@@ -147,6 +149,7 @@ bool Simulation::pause_requested() const { return state_->actions->pause_request
 const std::vector<ActionFired>& Simulation::fired() const { return state_->actions->fired; }
 const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
 std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { return state_->world->rope_break_events(); }
+const std::vector<ThingBroke>& Simulation::broke() const { return state_->broke; }
 const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
 const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
 

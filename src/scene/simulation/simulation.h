@@ -31,6 +31,15 @@ struct ActionFired {
     EntityIndex sender = 0, receiver = 0;  ///< 0: none
 };
 
+/// A thing that broke in the last step: it is not in the world any more, its pieces are spawned.
+struct ThingBroke {
+    EntityIndex entity = 0;
+    std::string name;
+    Vec3 position;                   ///< of the blow, m
+    double impulse = 0, energy = 0;  ///< of the blow, N s and J
+    std::size_t pieces = 0;
+};
+
 /// Number of entities by state, of all that can move and are enabled: an entity counts once, whether it is one body, a
 /// pile of grains, a liquid, or a deformable.
 struct Activity {
@@ -59,7 +68,7 @@ public:
 
     /// One time step: actions that are due, physics, then actions that its events trigger.
     const physics::StepReport& step();
-    /// Entities that actions added to the world and removed from it in the last step.
+    /// Entities that actions added to the world and removed from it in the last step; pieces, and what broke into them.
     [[nodiscard]] const std::vector<EntityIndex>& spawned() const;
     [[nodiscard]] const std::vector<EntityIndex>& despawned() const;
     /// Effects of the last step that could not be carried out, and why.
@@ -69,6 +78,7 @@ public:
     [[nodiscard]] const std::vector<ActionFired>& fired() const;
     /// Ropes that broke in the last step; their user_data is the entity.
     [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
+    [[nodiscard]] const std::vector<ThingBroke>& broke() const;
     /// A key or button (OnSignal); returns the number of actions it starts at the next step.
     std::size_t signal(const std::string& key, const std::string& button);
     /// Carries out an action at the next step, whatever sets it off, as `sender` does it; 0: an entity that the

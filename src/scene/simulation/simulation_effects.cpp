@@ -8,7 +8,8 @@ namespace embody::scene {
 
 namespace {
 
-// Maximum number of spawned entities: an action that spawns at every contact would fill the memory.
+// Maximum number of spawned entities, pieces of broken things too: an action that spawns at every contact would fill
+// the memory.
 constexpr std::size_t max_spawned = 10'000;
 // Maximum number per step: an action that answers contacts by things that make contacts must not explode within a step.
 constexpr std::size_t max_spawned_per_step = 32;
@@ -45,9 +46,14 @@ Result<void> Simulation::State::change(EntityIndex index, const Effect& effect) 
     return {};
 }
 
+Result<EntityIndex> Simulation::State::new_index() const {
+    if (next_spawned - last_document_index <= max_spawned) return next_spawned;
+    return Error{"spawn", "10000 entities were spawned in this run",
+                 "let the action fire less often, or things break into fewer pieces"};
+}
+
 Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spawn) {
-    if (next_spawned - last_document_index > max_spawned)
-        return Error{"spawn", "10000 entities were spawned in this run", "let the action fire less often"};
+    if (const auto index = new_index(); !index.ok()) return index.error();
     if (spawned.size() >= max_spawned_per_step) return Error{"spawn", "32 entities were spawned in this step"};
     const Entity* original = definition(like);
     if (const auto found = templates.find(like); found != templates.end()) original = &found->second;

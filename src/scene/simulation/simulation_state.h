@@ -83,6 +83,7 @@ struct Simulation::State {
     std::vector<TimedForce> timed_forces;
     std::vector<HandBall> hands;
     std::vector<EntityIndex> spawned, despawned;
+    std::vector<ThingBroke> broke;
     EntityIndex next_spawned = last_document_index + 1;
     std::unique_ptr<ActionRunner> actions;
 
@@ -141,6 +142,8 @@ struct Simulation::State {
     void start_actions(const std::vector<Action>& list);
     /// A push lasts at least one step.
     void apply_timed_forces();
+    /// The pieces of what broke in the step become entities in its place (simulation_breaks.cpp).
+    void take_pieces();
     /// Null for an entity that is not in the world.
     [[nodiscard]] const Entity* definition(EntityIndex index) const;
 
@@ -169,6 +172,8 @@ private:
 
     Result<void> change(EntityIndex index, const Effect& effect);
     Result<void> set_attribute(LiveEntity& entity, const SetAttribute& set);
+    Result<void> add_pieces(const physics::BodyBreakEvent& event);
+    [[nodiscard]] Result<EntityIndex> new_index() const;
     Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn);
     [[nodiscard]] std::string category(EntityIndex index) const;
     [[nodiscard]] Vec3 center_of_mass(const LiveEntity& entity) const;

@@ -28,6 +28,7 @@ const SYNONYMS: Record<string, string> = {
   collision_shape: "hull collider",
   break_impulse: "fragile break",
   break_energy: "fragile break",
+  breaks: "fragile break",
   youngs_modulus: "stiffness hard squishy elastic",
   poisson_ratio: "squeeze bulge",
   damping_rayleigh: "jelly wobble",

@@ -104,6 +104,10 @@ void place_body(const WakeAccess& world, ImpactMemory& impacts, std::uint32_t bo
 
     const BodyRecord& record = world.rigid.record(body);
     const BodyDefinition& definition = record.definition;
+    if (definition.brittleness && record.shape && world.rigid.is_dynamic(body))
+        world.rigid.brittle.insert(body);
+    else
+        world.rigid.brittle.erase(body);
     if (!definition.enabled) return;
     if (record.shape) {
         world.contacts.broad_phase.insert(body, record.shape->bounds(world.rigid.pose(body)),
