@@ -188,6 +188,8 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         print_line("note: a liquid's motion left the finite numbers; it was frozen where it was");
     if (reached(StepLimit::fluid_particles_lost))
         print_line("note: liquid flowed so far away that it was removed; a floor or walls keep it");
+    if (reached(StepLimit::fluid_source_waits))
+        print_line("note: a source waited, as its liquid has as many drops as it allows");
     if (reached(StepLimit::impact_iterations_exhausted))
         print_line("note: an impact needed more iterations than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))

@@ -10,5 +10,6 @@ using BodyHandle = Handle<struct BodyTag>;
 using JointHandle = Handle<struct JointTag>;
 using DeformableHandle = Handle<struct DeformableTag>;
 using FluidHandle = Handle<struct FluidTag>;
+using FluidPortHandle = Handle<struct FluidPortTag>;
 
 }  // namespace embody::physics

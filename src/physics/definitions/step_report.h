@@ -40,6 +40,7 @@ enum class StepLimit : std::uint32_t {
     fluid_too_fast = 1u << 9,        ///< liquid moves by many cells a step; a larger cell_size or smaller time_step
                                      ///< helps
     fluid_unsolved = 1u << 10,       ///< its pressure or viscosity was not solved to the end; a smaller time_step helps
+    fluid_source_waits = 1u << 11,   ///< a fluid has as many particles as a source allows; raise its max_particles
 };
 
 struct StepReport {

@@ -41,6 +41,16 @@ FluidIds FluidSolver::add_particles(std::span<const Vec3f> positions) {
     return {first, next_id_};
 }
 
+std::size_t FluidSolver::take_within(Vec3 center, double radius) {
+    const Vec3 local = center - origin_;
+    const std::size_t taken = std::erase_if(particles_, [&](const FluidParticle& particle) {
+        const float* x = particle.position;
+        return length_squared(Vec3{x[0], x[1], x[2]} - local) <= radius * radius;
+    });
+    if (taken > 0) liquids_.keep_liquids_of(particles_);
+    return taken;
+}
+
 std::vector<FluidParticle> FluidSolver::take_particles(FluidIds ids) {
     std::vector<FluidParticle> taken;
     std::erase_if(particles_, [&](const FluidParticle& particle) {

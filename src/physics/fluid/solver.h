@@ -74,6 +74,8 @@ public:
     [[nodiscard]] bool is_top_heavy(Vec3 gravity) const { return liquids_.is_top_heavy(grid_, gravity); }
     /// Adds particles at rest; their ids follow all earlier ones.
     FluidIds add_particles(std::span<const Vec3f> positions);
+    /// Removes the particles in a ball of the world; returns their number.
+    std::size_t take_within(Vec3 center, double radius);
     /// Removes the particles with these ids; returns them in the order of the ids.
     std::vector<FluidParticle> take_particles(FluidIds ids);
     /// Adds particles as they are, from a frame of world axes at `origin`; their ids follow all earlier ones.

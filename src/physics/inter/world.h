@@ -14,6 +14,7 @@
 #include "physics/definitions/deformable_definition.h"
 #include "physics/definitions/events.h"
 #include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/fluid_port.h"
 #include "physics/definitions/joint_definition.h"
 #include "physics/definitions/shape_definition.h"
 #include "physics/definitions/step_report.h"
@@ -172,6 +173,15 @@ public:
     /// Force of all fluids on a dynamic or kinematic body; on static ones it is not measured.
     [[nodiscard]] FluidForce fluid_force(BodyHandle body) const;
     Result<void> wake(FluidHandle fluid);
+    // Sources and drains of liquid.
+    Result<FluidPortHandle> create_fluid_port(const FluidPort& port);
+    /// What went through it so far stays.
+    Result<void> set_fluid_port(FluidPortHandle handle, const FluidPort& port);
+    Result<void> destroy_fluid_port(FluidPortHandle handle);
+    /// nullptr if stale.
+    [[nodiscard]] const FluidPort* fluid_port(FluidPortHandle handle) const;
+    /// Particles that came out of it, or went into it, so far; 0 if stale.
+    [[nodiscard]] std::uint64_t passed_particles(FluidPortHandle handle) const;
 
     /// Advances by settings().time_step.
     const StepReport& step();

@@ -24,7 +24,7 @@ struct LimitText {
     physics::StepLimit limit;
     const char* text;
 };
-constexpr std::array<LimitText, 9> limit_texts = {{
+constexpr std::array<LimitText, 10> limit_texts = {{
     {physics::StepLimit::linear_speed_clamped,
      "Something was faster than the scene's greatest speed and was slowed down."},
     {physics::StepLimit::angular_speed_clamped,
@@ -38,6 +38,7 @@ constexpr std::array<LimitText, 9> limit_texts = {{
      "A liquid's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::fluid_particles_lost,
      "Liquid ran so far away that it was taken out; a floor or walls keep it."},
+    {physics::StepLimit::fluid_source_waits, "A source waits: its liquid has as many drops as the source allows."},
     {physics::StepLimit::impact_iterations_exhausted,
      "An impact was too complicated for one step; a smaller time step helps."},
     {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},

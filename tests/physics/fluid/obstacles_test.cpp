@@ -122,6 +122,24 @@ TEST(ObstacleProbe, AClosedMeshIsTheSolidThatItEncloses) {
     }
 }
 
+TEST(ObstacleProbe, AClosedMeshEnclosesWhatItsSolidHas) {
+    Random random(9);
+    const Vec3 half{0.3, 0.2, 0.5};
+    const auto mesh = CollisionShape::create(mesh_of_box(half)).value();
+    MeshShape without_lid = mesh_of_box(half);
+    without_lid.triangles.resize(without_lid.triangles.size() - 2);
+    const auto open = CollisionShape::create(without_lid).value();
+    const auto box = CollisionShape::create(BoxShape{half}).value();
+    for (int trial = 0; trial < 300; ++trial) {
+        const Transform pose = any_pose(random);
+        const Vec3 p = any_point(random, 0.6);
+        const bool is_inside = distance_of_box(half, transform_point(inverse(pose), p)) < 0;
+        EXPECT_EQ(ObstacleProbe(*mesh, pose, {}).encloses(p), is_inside);
+        EXPECT_FALSE(ObstacleProbe(*open, pose, {}).encloses(p));
+        EXPECT_FALSE(ObstacleProbe(*box, pose, {}).encloses(p));
+    }
+}
+
 TEST(ObstacleProbe, APlaneIsAHalfSpace) {
     Random random(4);
     const auto plane = CollisionShape::create(PlaneShape{{0, 2, 0}, 0.1}).value();

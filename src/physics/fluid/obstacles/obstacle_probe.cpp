@@ -164,6 +164,18 @@ Vec3 closest_on_triangle(Vec3 p, const std::array<Vec3, 3>& t) {
     return t[0] + ab * (vb / sum) + ac * (vc / sum);
 }
 
+// Whether a ray leaves a solid through a triangle of its surface (1), enters it (-1) or misses the triangle (0), by T.
+// Möller and B. Trumbore.
+int crosses(const std::array<Vec3, 3>& corners, Vec3 origin, Vec3 direction) {
+    const auto& [a, b, c] = corners;
+    const Vec3 ab = b - a, ac = c - a, p = cross(direction, ac), from = origin - a, q = cross(from, ab);
+    const double determinant = dot(ab, p);
+    if (determinant == 0) return 0;
+    const double u = dot(from, p) / determinant, v = dot(direction, q) / determinant;
+    if (u < 0 || v < 0 || u + v > 1 || dot(ac, q) / determinant < 0) return 0;
+    return determinant < 0 ? 1 : -1;
+}
+
 }  // namespace
 
 ObstacleProbe::ObstacleProbe(const CollisionShape& shape, const Transform& pose, const FluidObstacleSettings& settings)
@@ -177,6 +189,28 @@ ObstacleProbe::ObstacleProbe(const CollisionShape& shape, const Transform& pose,
 }
 
 bool ObstacleProbe::is_surface() const { return shape_->data().surface != nullptr; }
+
+// A place in a solid leaves it once more than it enters it, in every direction. One that is asked of six directions is
+// on the safe side where a surface has holes or is a single sheet: an open vessel is left through its opening.
+bool ObstacleProbe::encloses(Vec3 p) const {
+    const TriangleSurface* surface = shape_->data().surface.get();
+    if (surface == nullptr) return false;
+    const Vec3 origin = inverse_transform_point(pose_, p);
+    if (!contains(surface->bounds(), origin)) return false;
+    const double limit = length(surface->bounds().size());
+    for (int side = 0; side < 6; ++side) {
+        Vec3 direction;
+        direction[side / 2] = side % 2 == 0 ? 1 : -1;
+        int leaves = 0;
+        surface->find_along_ray(origin, direction, limit, [&](std::uint32_t index, double unchanged) {
+            const int facing = crosses(surface->corners(index), origin, direction);
+            leaves += facing;
+            return unchanged;
+        });
+        if (leaves < 1) return false;
+    }
+    return true;
+}
 
 bool ObstacleProbe::look_at(const Bounds& box, double reach) {
     reach_ = reach;

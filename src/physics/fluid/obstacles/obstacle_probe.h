@@ -48,6 +48,8 @@ public:
     [[nodiscard]] std::optional<Crossing> crossing(Vec3 a, Vec3 b) const;
     /// Whether it consists of triangles, which have liquid on both sides.
     [[nodiscard]] bool is_surface() const;
+    /// Whether a place is in the solid that triangles enclose, however thick; false for other shapes.
+    [[nodiscard]] bool encloses(Vec3 p) const;
     /// Whether it has no hollow that could hold liquid.
     [[nodiscard]] bool is_convex() const { return pieces_.size() == 1; }
 

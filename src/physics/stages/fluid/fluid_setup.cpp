@@ -111,7 +111,8 @@ void leave_out_obstacles(const ObstacleAccess& world, double cell_size, std::vec
         ObstacleProbe probe(*record.shape, world.rigid.pose(slot), settings);
         if (!probe.look_at(bounds, cell_size)) return;
         std::erase_if(places, [&](Vec3 p) {
-            return !(contains(enlarged(probe.bounds(), cell_size), p)) ? false : probe.nearest(p).distance < 0;
+            if (!contains(enlarged(probe.bounds(), cell_size), p)) return false;
+            return probe.nearest(p).distance < 0 || probe.encloses(p);
         });
     });
 }

@@ -8,6 +8,7 @@
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
+#include "physics/stages/fluid/fluid_ports.h"
 #include "physics/stages/fluid/fluids.h"
 #include "physics/stages/fluid/immersed_deformables.h"
 #include "physics/stages/rigid/wake.h"
@@ -317,6 +318,7 @@ void advance_fluids(const FluidAccess& world) {
     const bool had_pushed = !world.fluids.pushed_bodies.empty();
     world.fluids.pushed_bodies.clear();
     begin_immersed(world);
+    run_fluid_ports(world);
     if (world.fluids.records.count() == 0 && !had_pushed) return;
     world.fluids.touches.resize(world.rigid.bodies.slot_count());
     for (std::uint32_t slot = 0; slot < world.fluids.records.slot_count(); ++slot) {

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// Sources and drains: what came in less what went out is there, by particles; the rate is the one that was asked for.
+#include <limits>
+
+#include "foundation/random.h"
+#include "validation/fluid_scenes.h"
+
+namespace embody::physics {
+namespace {
+
+constexpr Bounds tank{{-0.3, 0, -0.3}, {0.3, 0.5, 0.3}};
+
+std::size_t count_of(const World& world, FluidHandle fluid) { return world.fluid_particles(fluid).positions.size(); }
+
+FluidHandle fill(World& world, double depth, double cell) {
+    add_tank(world, tank);
+    return world.create_fluid({.boxes = {{tank.lower, {tank.upper.x, depth, tank.upper.z}}}, .cell_size = cell})
+        .value();
+}
+
+class FluidPorts : public testing::TestWithParam<unsigned> {};
+
+TEST_P(FluidPorts, WhatCameInLessWhatWentOutIsThere) {
+    Random random(GetParam() + 1);
+    auto world = make_world({});
+    const double cell = random.between(0.03, 0.05);
+    const FluidHandle water = fill(*world, 0.1, cell);
+    const std::size_t before = count_of(*world, water);
+    FluidSource tap{.fluid = water,
+                    .position = {random.between(-0.15, 0.15), random.between(0.2, 0.4), random.between(-0.15, 0.15)},
+                    .direction = {random.between(-0.3, 0.3), -1, random.between(-0.3, 0.3)},
+                    .radius = random.between(0.01, 0.05),
+                    .rate = random.between(0.5e-3, 3e-3)};
+    const FluidPortHandle source = world->create_fluid_port(tap).value();
+    const FluidPortHandle drain =
+        world->create_fluid_port(FluidDrain{.position = {0, 0, 0}, .radius = random.between(0.6, 1.5) * cell}).value();
+    const double seconds = 3;
+    for (int i = 0; i < 180; ++i) {
+        world->step();
+        ASSERT_EQ(count_of(*world, water) + world->passed_particles(drain), before + world->passed_particles(source));
+    }
+    const double volume = world->fluid_particles(water).particle_volume;
+    EXPECT_NEAR(volume * static_cast<double>(world->passed_particles(source)), tap.rate * seconds, volume);
+    EXPECT_GT(world->passed_particles(drain), 0u);
+    RecordProperty("poured", std::to_string(world->passed_particles(source)));
+    RecordProperty("drained", std::to_string(world->passed_particles(drain)));
+}
+
+TEST_P(FluidPorts, AJetHasTheRateAndTheSpeedAskedFor) {
+    Random random(GetParam() + 101);
+    auto world = make_world({.gravity = {0, 0, 0}});
+    const FluidHandle water =
+        world->create_fluid({.boxes = {{{1, 1, 1}, {1.04, 1.04, 1.04}}}, .cell_size = 0.02}).value();
+    const Vec3 direction =
+        normalized(Vec3{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}, Vec3{1, 0, 0});
+    const FluidSource tap{.fluid = water,
+                          .direction = direction,
+                          .radius = random.between(0.02, 0.04),
+                          .rate = random.between(2e-3, 4e-3)};
+    ASSERT_TRUE(world->create_fluid_port(tap));
+    run(*world, 0.5);
+    // Through a plane across the jet at 0.1 m and one at 0.2 m: what is between them moves on by the speed.
+    const FluidParticles particles = world->fluid_particles(water);
+    double between = 0, farthest = 0, widest = 0;
+    for (const Vec3f p : particles.positions) {
+        const Vec3 place = particles.origin + Vec3(p);
+        const double along = dot(place, direction);
+        if (length(place) > 1.2) continue;  // the first water
+        between += along > 0.1 && along < 0.2 ? particles.particle_volume : 0;
+        farthest = std::max(farthest, along);
+        widest = std::max(widest, length(place - along * direction));
+    }
+    const double area = pi * tap.radius * tap.radius, speed = tap.rate / area;
+    RecordProperty("area_ratio", std::to_string(between / 0.1 / area));
+    RecordProperty("speed_ratio", std::to_string(farthest / 0.5 / speed));
+    EXPECT_NEAR(between / 0.1, area, 0.1 * area);
+    EXPECT_NEAR(farthest, 0.5 * speed, 0.05 * speed);
+    EXPECT_LT(widest, 1.5 * tap.radius);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, FluidPorts, testing::Range(0u, 6u));
+
+TEST(FluidPort, GoesAlongWithItsBodyAndEndsWithIt) {
+    auto world = make_world({.gravity = {0, 0, 0}});
+    const FluidHandle water = world->create_fluid({.boxes = {{{1, 1, 1}, {1.1, 1.1, 1.1}}}, .cell_size = 0.05}).value();
+    const BodyHandle hose =
+        add_box(*world, {0.01, 0.01, 0.01}, {.kind = BodyKind::kinematic_body, .linear_velocity = {0.5, 0, 0}});
+    const FluidPortHandle tap =
+        world
+            ->create_fluid_port(
+                FluidSource{.fluid = water, .body = hose, .position = {0, -0.02, 0}, .rate = 1e-3, .speed = 1})
+            .value();
+    run(*world, 0.5);
+    // The hose moves by 0.25 m along X, and so does what comes out of it.
+    const FluidParticles particles = world->fluid_particles(water);
+    for (const Vec3f p : particles.positions) {
+        const Vec3 place = particles.origin + Vec3(p);
+        if (place.y < 0) EXPECT_NEAR(place.x, 0.25, 0.03);
+    }
+    const std::uint64_t passed = world->passed_particles(tap);
+    EXPECT_GT(passed, 0u);
+    ASSERT_TRUE(world->destroy_body(hose));
+    run(*world, 0.5);
+    EXPECT_EQ(world->passed_particles(tap), passed);
+}
+
+TEST(FluidPort, ShutItPassesNothingAndWaitsWhereTheFluidIsFull) {
+    auto world = make_world({});
+    const FluidHandle water = fill(*world, 0.1, 0.05);
+    const std::size_t before = count_of(*world, water);
+    FluidSource tap{.fluid = water, .position = {0, 0.3, 0}, .rate = 2e-3, .is_open = false};
+    const FluidPortHandle source = world->create_fluid_port(tap).value();
+    run(*world, 0.5);
+    EXPECT_EQ(count_of(*world, water), before);
+    tap.is_open = true;
+    tap.max_particles = before + 20;
+    ASSERT_TRUE(world->set_fluid_port(source, tap));
+    std::uint32_t limits = 0;
+    for (int i = 0; i < 60; ++i) limits |= world->step().limits;
+    EXPECT_EQ(count_of(*world, water), before + 20);
+    EXPECT_NE(limits & static_cast<std::uint32_t>(StepLimit::fluid_source_waits), 0u);
+    ASSERT_TRUE(world->destroy_fluid_port(source));
+    EXPECT_FALSE(world->destroy_fluid_port(source));
+    EXPECT_EQ(world->fluid_port(source), nullptr);
+}
+
+TEST(FluidPort, WakesWaterThatSleeps) {
+    auto world = make_world({});
+    const FluidHandle water = fill(*world, 0.1, 0.05);
+    for (int i = 0; i < 1800 && !world->fluid_particles(water).is_asleep; ++i) world->step();
+    ASSERT_TRUE(world->fluid_particles(water).is_asleep);
+    const FluidPortHandle drain = world->create_fluid_port(FluidDrain{.radius = 0.06}).value();
+    world->step();
+    EXPECT_FALSE(world->fluid_particles(water).is_asleep);
+    EXPECT_GT(world->passed_particles(drain), 0u);
+}
+
+TEST(FluidPort, HasEqualBitsForAnyNumberOfWorkers) {
+    std::vector<Vec3f> first;
+    for (const int workers : {1, 3}) {
+        auto world = make_world({.workers = workers});
+        const FluidHandle water = fill(*world, 0.15, 0.03);
+        ASSERT_TRUE(world->create_fluid_port(
+            FluidSource{.fluid = water, .position = {0.05, 0.3, 0}, .radius = 0.03, .rate = 2e-3}));
+        ASSERT_TRUE(world->create_fluid_port(FluidDrain{.radius = 0.04}));
+        run(*world, 0.3);
+        const auto positions = world->fluid_particles(water).positions;
+        if (first.empty()) first.assign(positions.begin(), positions.end());
+        ASSERT_EQ(first.size(), positions.size());
+        for (std::size_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i], positions[i]);
+    }
+}
+
+TEST(FluidPort, WhatMakesNoSenseIsRefusedByField) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    auto world = make_world({});
+    const FluidHandle water = fill(*world, 0.1, 0.05);
+    const auto field = [&](auto change) {
+        FluidSource source{.fluid = water};
+        change(source);
+        const auto made = world->create_fluid_port(source);
+        return made ? std::string("accepted") : made.error().where;
+    };
+    EXPECT_EQ(field([](FluidSource&) {}), "accepted");
+    EXPECT_EQ(field([](FluidSource& s) { s.fluid = {}; }), "fluid");
+    EXPECT_EQ(field([](FluidSource& s) { s.fluid.generation += 7; }), "fluid");
+    EXPECT_EQ(field([](FluidSource& s) { s.body = {3, 9}; }), "body");
+    EXPECT_EQ(field([](FluidSource& s) { s.position.y = nan; }), "position.y");
+    EXPECT_EQ(field([](FluidSource& s) { s.direction = {}; }), "direction");
+    EXPECT_EQ(field([](FluidSource& s) { s.direction.x = nan; }), "direction.x");
+    EXPECT_EQ(field([](FluidSource& s) { s.radius = -1; }), "radius");
+    EXPECT_EQ(field([](FluidSource& s) { s.radius = 0; }), "speed");
+    EXPECT_EQ(field([](FluidSource& s) { s.rate = nan; }), "rate");
+    EXPECT_EQ(field([](FluidSource& s) { s.speed = 1e9; }), "speed");
+    const auto drain = world->create_fluid_port(FluidDrain{.radius = nan});
+    ASSERT_FALSE(drain);
+    EXPECT_EQ(drain.error().where, "radius");
+}
+
+}  // namespace
+}  // namespace embody::physics
