@@ -202,9 +202,29 @@ def trampoline() -> dict:
     return scene("Trampoline", "A sheet held at its rim, and balls that jump on it.", [3.1, 2.3, 3.6], [0, 1.1, 0], entities)
 
 
+def breaking_plates() -> dict:
+    """Porcelain plates, a pane of glass and a ball on a floor of tiles. A plate breaks above 0.5 N s, as a fall of 7 cm gives."""
+    china = {"mass": 0.5, "friction_static": 0.45, "friction_dynamic": 0.35, "restitution": 0.3, "breaks": True, "break_impulse": 0.5, "fracture_energy": 25, "break_pieces": 16}
+    glass = {"mass": 3.6, "friction_static": 0.5, "friction_dynamic": 0.4, "restitution": 0.3, "breaks": True, "break_impulse": 3, "fracture_energy": 8, "break_pieces": 32}
+    entities = [{**fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.75, 0.72, 0.68], friction_static=0.5, friction_dynamic=0.4, restitution=0.3), "finish": "tiles"}]
+    for number, (x, y, degrees) in enumerate([(-0.9, 0.9, 8), (-0.5, 1.4, 35), (-0.1, 1.9, 80)]):
+        pose = {"position": [x, y, 0.3], "rotation": turn([0, 0, 1], degrees)}
+        entities.append({"name": f"Plate {number + 1}", "shape": {"type": "cylinder", "radius": 0.13, "half_height": 0.006}, "pose": pose, "color": hue(number / 3), "attributes": dict(china)})
+    # The pane stands in a groove of two posts.
+    entities.append(box("Pane", [0.3, 0.4, 0.003], [0.9, 0.401, -0.3], [0.55, 0.75, 0.8], attributes=dict(glass)))
+    for side in (-1, 1):
+        for face in (-1, 1):
+            entities.append(fixed("Post", [0.03, 0.4, 0.015], [0.9 + side * 0.3, 0.4, -0.3 + face * 0.019], [0.4, 0.28, 0.16]))
+    entities.append(fixed("Wall", [4, 1, 0.1], [0, 1, -2], [0.85, 0.83, 0.8]))
+    ball = sphere("Ball", 0.06, [0.85, 0.45, 2.2], [0.75, 0.2, 0.15], attributes={"mass": 1.5, "restitution": 0.3})
+    ball["linear_velocity"] = [0, 2.2, -9]
+    entities.append(ball)
+    return scene("Breaking plates", "Plates fall on tiles, and a ball flies through a pane. Make one stronger (Breaking impulse) and play again.", [0.8, 1.0, 2.3], [0.05, 0.35, 0], entities)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

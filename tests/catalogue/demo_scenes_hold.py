@@ -181,6 +181,11 @@ def pool_table(run: Run):
     yield from within("balls that the break has moved", moved, 10, 16)
 
 
+def breaking_plates(run: Run):
+    whole = [index for index in run.called("Plate") + run.called("Pane") if index in run.last and index < 2**31]
+    yield from within("plates and panes that are whole", len(whole), 0, 0)
+
+
 def trampoline(run: Run):
     for index in run.called("Ball"):
         yield from within(f"height of {run.names[index]}", run.last[index]["position"][1], 0.3, 4.5)
@@ -201,6 +206,7 @@ def wrecking_ball(run: Run):
 # Seconds to simulate, whether all is asleep afterwards, and the law.
 SCENES = {
     "bathtub": (3, False, bathtub),
+    "breaking_plates": (4, False, breaking_plates),
     "card_house": (8, True, card_house),
     "curtain_in_the_wind": (3, False, curtain),
     "cushions_on_a_sofa": (12, True, cushions),
