@@ -166,11 +166,10 @@ Result<physics::Brittleness> brittleness_from(const AttributeSet& set) {
     constexpr double min_limit = 1e-9;
     // J/kg: what glass of 45 MPa, 70 GPa and 2,500 kg/m³ stores before it breaks (docs/physics/fracture.md).
     constexpr double of_glass = 5.8;
-    physics::Brittleness brittleness{
-        .break_impulse = std::max(number_or_standard(set, "break_impulse"), min_limit),
-        .break_energy = std::max(number_or_standard(set, "break_energy"), min_limit),
-        .fracture_energy = number_or_standard(set, "fracture_energy"),
-        .max_pieces = static_cast<int>(number_or_standard(set, "break_pieces"))};
+    physics::Brittleness brittleness{.break_impulse = std::max(number_or_standard(set, "break_impulse"), min_limit),
+                                     .break_energy = std::max(number_or_standard(set, "break_energy"), min_limit),
+                                     .fracture_energy = number_or_standard(set, "fracture_energy"),
+                                     .max_pieces = static_cast<int>(number_or_standard(set, "break_pieces"))};
     if (std::isinf(brittleness.break_impulse) && std::isinf(brittleness.break_energy))
         brittleness.break_energy = of_glass * number_or_standard(set, "mass");
     if (const auto checked = validate(brittleness); !checked) return checked.error();
