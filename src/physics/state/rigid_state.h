@@ -18,6 +18,7 @@ namespace embody::physics::state {
 struct ShapeRecord {
     std::unique_ptr<CollisionShape> shape;
     std::uint32_t users = 0;
+    bool is_of_piece = false;  ///< made for a piece of a broken body: goes where that breaks again
 };
 
 /// A body as its user defined it. Its pose and velocities are out of date: BodyState has the present ones.
@@ -31,7 +32,8 @@ struct BodyRecord {
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
-    Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
+    Vec3 deformable_force, deformable_torque;            ///< pushes of deformables for the next step, N, N m
+    Vec3 whole_push, whole_push_torque;                  ///< all of their pushes in the last step, N, N m
     Vec3 late_force, late_torque;                        ///< the part of these by sheets that take the step as a whole
     Vec3 drag;                                           ///< of the air in this step, or when it fell asleep, N
     Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m

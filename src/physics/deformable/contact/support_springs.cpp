@@ -26,8 +26,10 @@ void SupportSprings::add(std::uint32_t number, std::size_t index, const TouchedB
     } else {
         const Vec3 moved = body.path_displacement(end, support.anchor, support.turns) - end * support.velocity;
         const double push = dot(support.force, support.normal);
-        // What the rigid step left of an overlap stays; what it found apart must not come closer than to a touch.
-        spring.gap = std::max(0.0, support.gap - dot(moved, support.normal)) - dot(off, support.normal);
+        // What the rigid step left of an overlap stays, and so does what has bounced off again; what it found apart
+        // must not come closer than to a touch.
+        const double apart = push > 0 ? 0 : std::max(0.0, support.gap - dot(moved, support.normal));
+        spring.gap = apart - dot(off, support.normal);
         spring.friction = support.friction;
         spring.sticks = support.sticks;
         spring.carried = body.displacement(substep.h, end, spring.arm) - substep.h * support.velocity;
@@ -60,16 +62,19 @@ void SupportSprings::begin(std::span<const TouchSpring> springs, std::span<const
 }
 
 bool SupportSprings::choose(std::span<const BodyMove> body_moves, bool is_predicted, double tolerance) {
-    SpringChange sum;
+    bool has_changed = false;
+    SpringChange sum;  // of one body: beside a heavy one any force on a light one is small
     springs_.resize(contacts_.size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (i > 0 && contacts_[i].body != contacts_[i - 1].body) sum = {};
         TouchSpring& contact = contacts_[i];
         if (!contact.is_attachment) choose_contact(contact, contact.lead({}, body_moves), is_predicted, sum);
+        has_changed |= sum.change > tolerance * sum.near;
         springs_[i] = contact;
         springs_[i].load -= sources_[i].given;
         springs_[i].acts = springs_[i].is_attachment = true;
     }
-    return sum.change > tolerance * sum.near;
+    return has_changed;
 }
 
 void SupportSprings::finish(std::span<const BodyMove> body_moves, double h, std::span<TouchedBody> bodies,
@@ -85,7 +90,6 @@ void SupportSprings::finish(std::span<const BodyMove> body_moves, double h, std:
         body.bear(-h * more, contact.arm, h);
         support.force = force;
         support.impulse += h * force;
-        support.sticks = contact.sticks;
     }
 }
 

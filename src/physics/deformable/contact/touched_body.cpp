@@ -54,7 +54,9 @@ void TouchedBody::enter_whole_step(int substeps) {
 
 Vec3 TouchedBody::path_displacement(double time, Vec3 anchor, bool turns) const {
     const Vec3 moved = time * path_velocity + bend(time) * path_acceleration;
-    return turns ? moved + rotation_on_path(time, {}) * anchor - anchor : moved;
+    // A body that rolls turns under its point, one that tips lifts it.
+    const Vec3 turned = time * path_turn + bend(time) * path_spin_up;
+    return moved + (turns ? rotation_on_path(time, {}) * anchor - anchor : cross(turned, anchor));
 }
 
 void TouchedBody::move(Vec3 given, Vec3 given_turn, double h) {
@@ -80,26 +82,26 @@ void TouchedBody::push_turn(Vec3 given, double h) {
 
 void TouchedBody::bear(Vec3 given, Vec3 arm, double h) {
     move(given, cross(arm, given), h);
-    is_settled = true;
+    is_settled = is_open = true;
 }
 
 void TouchedBody::close_supports(double h) {
-    if (!is_settled) return;
+    if (!is_open) return;
+    is_open = false;
     for (BodySupport& support : supports) {
         support.given = support.impulse / h;
         support.impulse = {};
     }
 }
 
-PartPushes::PartPushes(std::span<const TouchedBody> bodies) {
-    for (const TouchedBody& body : bodies) velocities_.emplace_back(body.velocity, body.spin);
+void TouchedBody::return_to_part(double h, double part) {
+    shift -= (h - part) * velocity;
+    turn -= (h - part) * spin;
 }
 
-void PartPushes::go_on(std::span<TouchedBody> bodies, double h) const {
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        bodies[b].shift += h * (bodies[b].velocity - velocities_[b].first);
-        bodies[b].turn += h * (bodies[b].spin - velocities_[b].second);
-    }
+void TouchedBody::enter_part(double part) {
+    shift += part * velocity;
+    turn += part * spin;
 }
 
 }  // namespace embody::physics::deformable

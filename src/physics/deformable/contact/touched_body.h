@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "math/mat3.h"
@@ -57,6 +56,7 @@ struct TouchedBody {
     Vec3 borne_force, borne_torque;  ///< of these on the body along its path, N and N m
     bool is_off_path = false;  ///< pushes of the last step were taken off in this substep, and so were these forces
     bool is_settled = false;   ///< a solve of this substep included the supports
+    bool is_open = false;      ///< what the supports did in it is not in `given` yet
 
     Vec3 shift, turn;                         ///< displacement off the path so far, m and rad
     Vec3 velocity, spin;                      ///< velocities beyond the path's, m/s and rad/s
@@ -90,6 +90,10 @@ struct TouchedBody {
     /// After the last of `substeps`, before the deformables that push it once for the whole step: a push that is
     /// applied at once moves it further than one taken off in parts, so the rest of the displacement is taken off here.
     void enter_whole_step(int substeps);
+    /// Takes it back from the end of a substep of h seconds to that of its first part.
+    void return_to_part(double h, double part);
+    /// Goes on for another part, of that length, s.
+    void enter_part(double part);
     /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
     void push(Vec3 impulse, Vec3 arm, double h);
     /// As push(), by what bears the body: deformables do not push it by that.
@@ -105,18 +109,6 @@ private:
     [[nodiscard]] Mat3 rotation_on_path(double time, Vec3 off) const;
     // A path of constant acceleration differs from the straight one by this times the acceleration, s².
     [[nodiscard]] double bend(double time) const { return time * (time - step_time) / 2; }
-};
-
-/// Moves bodies through the parts of a substep: the effect of earlier parts' pushes continues in the next.
-class PartPushes {
-public:
-    /// Before the first part.
-    explicit PartPushes(std::span<const TouchedBody> bodies);
-    /// Before each further one, of h seconds.
-    void go_on(std::span<TouchedBody> bodies, double h) const;
-
-private:
-    std::vector<std::pair<Vec3, Vec3>> velocities_;  // displacement off the path, and spins
 };
 
 }  // namespace embody::physics::deformable

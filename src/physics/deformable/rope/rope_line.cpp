@@ -361,7 +361,9 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     if (is_frozen_) return;
     held_.assign(held.begin(), held.end());
     begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
-    begin_supports(substep, bodies);
+    // With a clamp it is solved after those of its group, whose solve has had the supports.
+    supports_ = {};
+    if (!clamps_.holds_any()) begin_supports(substep, bodies);
     if (!solve_moves(substep, bodies)) return freeze();
     std::vector<double> fractions;
     if (!clamps_.holds_any())

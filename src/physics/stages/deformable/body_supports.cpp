@@ -85,7 +85,8 @@ void add_joint(const DeformableAccess& world, const Joint& joint, bool is_a, Tou
     const Transform& local = is_a ? joint.local_a : joint.local_b;
     const Quat rotation = body.start.rotation;
     const Vec3 anchor = rotate(rotation, local.position);
-    const double reach = world.rigid.record(body.body).reach;
+    constexpr double min_reach = 0.01;  // m: of bodies without a shape, which turn about their hinges too
+    const double reach = std::max(world.rigid.record(body.body).reach, min_reach);
     const auto axis = [&](Vec3 of_joint) { return rotate(rotation, rotate(local.rotation, of_joint)); };
     const Vec3 x = axis({1, 0, 0}), y = axis({0, 1, 0});
     const auto hold = [&](Vec3 at, const Mat3& held) {

@@ -269,13 +269,15 @@ void put_back_bodies(const DeformableAccess& world, const MovingDeformables& mov
         if (world.activity.is_asleep(body.body)) {
             const double mass = 1 / world.rigid.motion[body.body].inverse_mass;
             const double weight = mass * length(world.settings.gravity);
-            const double more = std::max(length(force - record.deformable_force),
-                                         length(torque - record.deformable_torque) / std::max(record.reach, min_reach));
+            const double more = std::max(length(force - record.whole_push),
+                                         length(torque - record.whole_push_torque) / std::max(record.reach, min_reach));
             if (more > world.settings.solver.optimization.wake_force_fraction * weight)
                 world.activity.to_wake.push_back(body.body);
             continue;
         }
         const double kept = fraction_for_rigid_step(world, body, record.reach);
+        record.whole_push = force;
+        record.whole_push_torque = torque;
         record.deformable_force = kept * force;
         record.deformable_torque = kept * torque;
         record.late_force = (kept / dt) * body.late_impulse;

@@ -237,7 +237,9 @@ bool ThinGroupPart::choose_again(bool is_last) {
 void ThinGroupPart::settle_bodies(std::span<const BodyInertia> inertias) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
     for (int i = 0; i < settings.cloth.max_solves; ++i) {
-        if (!supports_.choose(body_moves_, false, settings.thin_contact.change_tolerance)) break;
+        SupportSprings next = supports_;
+        if (!next.choose(body_moves_, false, settings.thin_contact.change_tolerance)) break;
+        supports_ = std::move(next);
         gather_springs();
         balance_bodies(springs_, inertias, moves_, body_moves_);
     }

@@ -84,11 +84,15 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
 void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                       double time, std::vector<TouchedBody>& bodies) {
     const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
-    const PartPushes pushes(bodies);
     double done = 0, part = h;
     while (done < h) {
         const std::vector<TouchedBody> before = bodies;
-        if (done > 0) pushes.go_on(bodies, part);
+        for (TouchedBody& body : bodies) {
+            if (done > 0)
+                body.enter_part(part);
+            else if (part < h)
+                body.return_to_part(h, part);
+        }
         if (ThinGroupPart(world, group, thin, part, time + done).advance(bodies, part / 2 < shortest)) {
             done += part;
             part = std::min(2 * part, h - done);
@@ -132,7 +136,8 @@ bool is_unsettled(const TouchedBody& body, bool is_late) {
 
 // Bodies that no group has pushed in a substep of h seconds but whose paths include pushes of the last step: borne by
 // what still bears them without these.
-void settle_bodies(const DeformableAccess& world, std::span<TouchedBody> bodies, double h, double time, bool is_late) {
+void settle_released_bodies(const DeformableAccess& world, std::span<TouchedBody> bodies, double h, double time,
+                            bool is_late) {
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         if (is_unsettled(bodies[b], is_late)) numbers.push_back(b);
@@ -322,7 +327,7 @@ void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGrou
     for (const ThinGroup& group : groups) {
         if (group.in_substeps) advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
     }
-    settle_bodies(world, bodies, h, (k - 1) * h, false);
+    settle_released_bodies(world, bodies, h, (k - 1) * h, false);
     if (k < substeps) return;
     for (TouchedBody& body : bodies) {
         body.enter_whole_step(substeps);
@@ -332,7 +337,7 @@ void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGrou
     for (const ThinGroup& group : groups) {
         if (!group.in_substeps) advance_group(world, group, thin, step, 0, bodies, surfaces);
     }
-    settle_bodies(world, bodies, step, 0, true);
+    settle_released_bodies(world, bodies, step, 0, true);
     for (TouchedBody& body : bodies) {
         body.late_impulse = body.impulse - body.late_impulse;
         body.late_angular_impulse = body.angular_impulse - body.late_angular_impulse;
