@@ -171,6 +171,10 @@ TEST(FluidPort, WhatMakesNoSenseIsRefusedByField) {
     EXPECT_EQ(field([](FluidSource& s) { s.radius = -1; }), "radius");
     EXPECT_EQ(field([](FluidSource& s) { s.radius = 0; }), "speed");
     EXPECT_EQ(field([](FluidSource& s) { s.rate = nan; }), "rate");
+    EXPECT_EQ(field([](FluidSource& s) { s.radius = 1e-4; }), "radius") << "3,183 m/s";
+    EXPECT_EQ(field([](FluidSource& s) { s.radius = 1e-200; }), "radius");
+    EXPECT_EQ(field([](FluidSource& s) { s.direction = {0, 1e-200, 0}; }), "direction");
+    EXPECT_EQ(field([](FluidSource& s) { s.max_particles = max_fluid_particles + 1; }), "max_particles");
     EXPECT_EQ(field([](FluidSource& s) { s.speed = 1e9; }), "speed");
     const auto drain = world->create_fluid_port(FluidDrain{.radius = nan});
     ASSERT_FALSE(drain);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -246,6 +247,69 @@ TEST(Fracture, EndsWithABoundedNumberOfPieces) {
         EXPECT_GE(world->bodies().size(), 3u);
         for (const BodyHandle body : world->bodies()) EXPECT_GT(world->center_of_mass(body).y, -0.01);
     }
+}
+
+// Its slivers would be lighter than a body can be.
+TEST(Fracture, ALightThingBreaksOrKeepsItsBounce) {
+    for (const double mass : {0.001, 0.02}) {
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            Random random(seed);
+            const auto world = make_world();
+            add(*world, PlaneShape{}, {.kind = BodyKind::static_body});
+            const BodyHandle body =
+                add(*world, SphereShape{0.02},
+                    {.position = {0, 0.05, 0},
+                     .linear_velocity = {random.between(-1, 1), -5, 0},
+                     .mass = {.mass = mass},
+                     .brittleness = Brittleness{.break_energy = 1e-6, .fracture_energy = 0.1, .max_pieces = 100}});
+            for (int i = 0; i < 30; ++i) world->step();
+            EXPECT_FALSE(world->body(body)) << mass << " " << seed;
+            for (const BodyHandle each : world->bodies()) EXPECT_GT(world->center_of_mass(each).y, -0.02);
+        }
+    }
+}
+
+// Across its teeth a comb falls apart into more pieces than are allowed.
+TEST(Fracture, ACombHasNoMorePiecesThanAllowed) {
+    CompoundShape comb{{{BoxShape{{0.5, 0.02, 0.01}}, {{0, 0.1, 0}, {}}}}};
+    for (int tooth = 0; tooth < 40; ++tooth)
+        comb.children.push_back({BoxShape{{0.005, 0.09, 0.01}}, {{-0.49 + 0.025 * tooth, 0, 0}, {}}});
+    const auto world = make_world();
+    add(*world, PlaneShape{}, {.kind = BodyKind::static_body});
+    add(*world, comb,
+        {.position = {0, 0.5, 0},
+         .rotation = from_axis_angle({1, 0, 0}, 1.5),
+         .linear_velocity = {0, -10, 0},
+         .brittleness = Brittleness{.break_energy = 0.01, .fracture_energy = 0.1, .max_pieces = 4}});
+    for (int i = 0; i < 60; ++i) {
+        world->step();
+        for (const BodyBreakEvent& event : world->body_break_events()) EXPECT_LE(event.pieces.size(), 4u);
+    }
+}
+
+TEST(Fracture, ShapesOfPiecesThatBreakAgainAreGone) {
+    const auto world = make_world();
+    add(*world, PlaneShape{}, {.kind = BodyKind::static_body});
+    add(*world, BoxShape{{0.1, 0.1, 0.1}},
+        {.position = {0, 0.5, 0},
+         .linear_velocity = {0, -30, 0},
+         .brittleness = Brittleness{.break_energy = 0.01, .fracture_energy = 0.1, .max_pieces = 40}});
+    std::map<std::uint32_t, ShapeHandle> shapes;  // of pieces, by slot
+    int again = 0;
+    for (int i = 0; i < 120; ++i) {
+        world->step();
+        for (const BodyBreakEvent& event : world->body_break_events()) {
+            if (const auto known = shapes.find(event.body.index); known != shapes.end()) {
+                ++again;
+                EXPECT_EQ(world->shape(known->second), nullptr);
+                shapes.erase(known);
+            }
+        }
+        for (const BodyBreakEvent& event : world->body_break_events())
+            for (const BodyHandle piece : event.pieces)
+                if (const auto body = world->body(piece)) shapes[piece.index] = body->shape;
+    }
+    EXPECT_GT(again, 0);
 }
 
 TEST(Fracture, TheShapeOfAPieceIsTold) {

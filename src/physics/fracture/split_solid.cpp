@@ -103,13 +103,14 @@ void carry(const geometry::MassProperties& grain, std::vector<Piece>& pieces) {
 
 }  // namespace
 
-Split split_solid(std::span<const ConvexCell> solids, std::span<const Vec3> seeds) {
+Split split_solid(std::span<const ConvexCell> solids, std::span<const Vec3> seeds, double min_piece_volume) {
     const Bounds box = bounds_of(solids);
     const double size = length(box.upper - box.lower);
     Split split;
     double volume = 0;
     for (const ConvexCell& solid : solids) volume += solid.mass_properties().volume;
-    const double min_volume = dust_fraction * volume / static_cast<double>(std::max<std::size_t>(seeds.size(), 1));
+    const double mean = volume / static_cast<double>(std::max<std::size_t>(seeds.size(), 1));
+    const double min_volume = std::max(dust_fraction * mean, min_piece_volume);
     std::vector<geometry::MassProperties> dust;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         std::vector<Fragment> fragments;
@@ -148,8 +149,8 @@ std::vector<Vec3> choose_seeds(std::span<const ConvexCell> solids, Vec3 impact, 
     std::vector<Vec3> seeds;
     for (int i = 0; i < count; ++i) {
         const Vec3 place = point();
-        const double closeness = i % 2 == 0 ? 1 : random.unit();
-        seeds.push_back(impact + (place - impact) * closeness);
+        const double distance_fraction = i % 2 == 0 ? 1 : random.unit();
+        seeds.push_back(impact + (place - impact) * distance_fraction);
     }
     return seeds;
 }

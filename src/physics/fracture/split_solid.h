@@ -25,8 +25,8 @@ struct Split {
 
 /// Cuts convex solids along the Voronoi cells of the seeds. The pieces are disjoint, and their mass properties add up
 /// to those of the solids: what is too thin for a hull of its own is carried by the nearest piece. Solids that overlap
-/// both count. Equal inputs give equal bits.
-Split split_solid(std::span<const ConvexCell> solids, std::span<const Vec3> seeds);
+/// both count. `min_piece_volume`: of a piece, m³; smaller ones are carried, too. Equal inputs give equal bits.
+Split split_solid(std::span<const ConvexCell> solids, std::span<const Vec3> seeds, double min_piece_volume = 0);
 
 /// Seeds of `count` cells, every second one drawn towards `impact`: there the pieces are smaller.
 std::vector<Vec3> choose_seeds(std::span<const ConvexCell> solids, Vec3 impact, int count, Random& random);

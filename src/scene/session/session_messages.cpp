@@ -96,9 +96,13 @@ void SessionState::tell_step() {
             tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
-    // Pieces have the name of the thing, and may break again: the first message is enough.
+    // Pieces have the name of the thing, and may break again: one message for each thing of the document, and one for
+    // all others of a name.
     for (const ThingBroke& broke : simulation->broke())
-        if (told_problems.insert(broke.name + " broke into pieces").second)
+        if (told_problems
+                .insert((broke.entity > last_document_index ? broke.name : std::to_string(broke.entity)) +
+                        " broke into pieces")
+                .second)
             tell_message("info", broke.name + " broke into " + std::to_string(broke.pieces) + " pieces by a blow of " +
                                      attributes::short_number(broke.impulse) + " N s.");
 

@@ -127,6 +127,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
 const physics::StepReport& Simulation::step() {
     State& state = *state_;
     state.spawned.clear();
+    state.spawned_by_actions = 0;
     state.despawned.clear();
     state.broke.clear();
     state.actions->fired.clear();

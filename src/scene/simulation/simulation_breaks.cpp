@@ -67,8 +67,10 @@ Result<void> Simulation::State::add_pieces(const physics::BodyBreakEvent& event)
         const Result<EntityIndex> index = new_index();
         if (!index.ok()) return index.error();
         piece.index = index.value();
-        if (Result<void> added = add(piece); !added.ok()) return added;
-        spawned.push_back(next_spawned++);
+        if (Result<void> added = add(piece); added.ok())
+            spawned.push_back(next_spawned++);
+        else
+            actions->problems.push_back(added.error());
     }
     return {};
 }

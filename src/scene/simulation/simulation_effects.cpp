@@ -54,7 +54,7 @@ Result<EntityIndex> Simulation::State::new_index() const {
 
 Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spawn) {
     if (const auto index = new_index(); !index.ok()) return index.error();
-    if (spawned.size() >= max_spawned_per_step) return Error{"spawn", "32 entities were spawned in this step"};
+    if (spawned_by_actions >= max_spawned_per_step) return Error{"spawn", "32 entities were spawned in this step"};
     const Entity* original = definition(like);
     if (const auto found = templates.find(like); found != templates.end()) original = &found->second;
     if (!original) return Error{"receiver", "entity " + std::to_string(like) + " is not there any more"};
@@ -67,6 +67,7 @@ Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spaw
     copy.start_asleep = false;
     if (const Result<void> added = add(copy); !added.ok()) return added.error();
     spawned.push_back(next_spawned);
+    ++spawned_by_actions;
     return next_spawned++;
 }
 

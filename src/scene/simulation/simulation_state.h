@@ -83,6 +83,7 @@ struct Simulation::State {
     std::vector<TimedForce> timed_forces;
     std::vector<HandBall> hands;
     std::vector<EntityIndex> spawned, despawned;
+    std::size_t spawned_by_actions = 0;  ///< of `spawned`; the others are pieces
     std::vector<ThingBroke> broke;
     EntityIndex next_spawned = last_document_index + 1;
     std::unique_ptr<ActionRunner> actions;

@@ -24,6 +24,8 @@ namespace {
 
 // Of sums of energies.
 constexpr double rounding = 1e-9;
+// kg: of a piece; a little more than the least mass of a body.
+constexpr double min_mass = 1.001e-6;
 
 // What takes back the impulses of a blow: by body the sums over its contacts.
 struct Reversal {
@@ -75,7 +77,8 @@ double affordable_fraction(const FractureAccess& world, const Reversal& reversal
     }
     if (wanted * (linear + wanted * square) <= budget) return wanted;
     const double root = std::sqrt(std::max(0.0, linear * linear + 4 * square * budget));
-    return std::clamp((root - linear) / (2 * square), 0.0, wanted);
+    const double fraction = linear > 0 ? 2 * budget / (root + linear) : (root - linear) / (2 * square);
+    return std::clamp(fraction, 0.0, wanted);
 }
 
 void take_back(const FractureAccess& world, const Reversal& reversal, double fraction) {
@@ -86,8 +89,9 @@ void take_back(const FractureAccess& world, const Reversal& reversal, double fra
     }
 }
 
-// The solid cut into as many pieces as the blow makes and the budget (J) pays.
+// The solid cut into as many pieces as the blow makes and the budget (J) pays; what hangs together in a cell is one.
 Split split_by(const FractureAccess& world, std::uint32_t body, const Blow& blow, double budget) {
+    if (!(budget > 0)) return {};
     const BodyRecord& record = world.rigid.record(body);
     const auto cells = cells_of(record.shape->definition());
     if (!cells) return {};
@@ -100,11 +104,14 @@ Split split_by(const FractureAccess& world, std::uint32_t body, const Blow& blow
     const Brittleness& brittleness = *record.definition.brittleness;
     const Transform pose = world.rigid.pose(body);
     const Vec3 place = rotate_inverse(pose.rotation, blow.position - pose.position);
+    const double min_piece_volume = min_mass * volume / world.rigid.constants[body].mass;
+    const auto most = static_cast<std::size_t>(brittleness.max_pieces);
     for (int count = piece_count({box.size(), volume}, blow.energy, brittleness); count >= 2; count = count * 2 / 3) {
         // Seeded by the body and the step: equal runs break alike.
         Random random((static_cast<std::uint64_t>(body) << 32) ^ world.report.step);
-        Split split = split_solid(*cells, choose_seeds(*cells, place, count, random));
-        if (split.pieces.size() >= 2 && split.crack_area * brittleness.fracture_energy <= budget) return split;
+        Split split = split_solid(*cells, choose_seeds(*cells, place, count, random), min_piece_volume);
+        const bool is_affordable = split.crack_area * brittleness.fracture_energy <= budget;
+        if (split.pieces.size() >= 2 && split.pieces.size() <= most && is_affordable) return split;
     }
     return {};
 }
@@ -130,17 +137,18 @@ std::optional<PlannedBreak> plan_break(const FractureAccess& world, const StepLo
     planned.event = {{}, definition.user_data, on.blow.position, on.blow.impulse, on.blow.energy, split.crack_area, {}};
     const double cracks = split.crack_area * definition.brittleness->fracture_energy;
     const Reversal reversal = reversal_of(world, on, body);
+    std::vector<BodyState> before;
+    for (const Reversal::Push& push : reversal.pushes) before.push_back(world.rigid.motion[push.body]);
     // The excess of the blow is taken back as far as the losses pay, or not at all.
     for (const double fraction : {affordable_fraction(world, reversal, budget - cracks, *excess), 0.0}) {
         take_back(world, reversal, fraction);
         auto pieces = make_pieces(world, body, split);
-        if (!pieces) return std::nullopt;
-        planned.paid = cracks + pieces->energy_growth + fraction * reversal.driven;
-        if (planned.paid <= unspent(world, losses, body) * (1 + rounding)) {
+        planned.paid = cracks + fraction * reversal.driven + (pieces ? pieces->energy_growth : 0);
+        if (pieces && planned.paid <= unspent(world, losses, body) * (1 + rounding)) {
             planned.pieces = std::move(pieces->pieces);
             return planned;
         }
-        take_back(world, reversal, -fraction);
+        for (std::size_t i = 0; i < before.size(); ++i) world.rigid.motion[reversal.pushes[i].body] = before[i];
     }
     return std::nullopt;
 }
