@@ -205,7 +205,7 @@ def trampoline() -> dict:
 def breaking_plates() -> dict:
     """Porcelain plates, a pane of glass and a ball on a floor of tiles. A plate breaks above 0.5 N s, as a fall of 7 cm gives."""
     china = {"mass": 0.5, "friction_static": 0.45, "friction_dynamic": 0.35, "restitution": 0.3, "breaks": True, "break_impulse": 0.5, "fracture_energy": 25, "break_pieces": 16}
-    glass = {"mass": 3.6, "friction_static": 0.5, "friction_dynamic": 0.4, "restitution": 0.3, "breaks": True, "break_impulse": 3, "fracture_energy": 8, "break_pieces": 32}
+    glass = {"mass": 3.6, "friction_static": 0.5, "friction_dynamic": 0.4, "restitution": 0.3, "breaks": True, "break_impulse": 6, "fracture_energy": 8, "break_pieces": 32}
     entities = [{**fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.75, 0.72, 0.68], friction_static=0.5, friction_dynamic=0.4, restitution=0.3), "finish": "tiles"}]
     for number, (x, y, degrees) in enumerate([(-0.9, 0.9, 8), (-0.5, 1.4, 35), (-0.1, 1.9, 80)]):
         pose = {"position": [x, y, 0.3], "rotation": turn([0, 0, 1], degrees)}
