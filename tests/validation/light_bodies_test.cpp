@@ -146,6 +146,30 @@ TEST(LightBodies, ABoxUnderSheetsThatDoNotTouchEachOtherStays) {
     }
 }
 
+// A plate of 50 g that joints hold in the air bears 5 kg that fall on it.
+TEST(LightBodies, APlateOnJointsBearsAHeavySheet) {
+    for (const JointKind& kind : {JointKind{FixedJoint{}}, JointKind{HingeJoint{}}}) {
+        const auto world = make_world({});
+        BodyDefinition plate{.kind = BodyKind::dynamic_body,
+                             .shape = world->create_shape(BoxShape{{0.2, 0.01, 0.2}}).value(),
+                             .position = {0, 1, 0}};
+        plate.mass.mass = 0.05;
+        const BodyHandle light = world->create_body(plate).value();
+        JointDefinition joint{.joint = kind, .body_b = light};
+        joint.frame_a.position = {0, 1, 0};
+        ASSERT_TRUE(world->create_joint(joint).ok());
+        auto sheet = cloth_rectangle(0.5, 0.5, 0.05, {.area_density = 20, .rayleigh_damping = 0.01});
+        sheet.pose.position = {0, 1.2, 0};
+        ASSERT_TRUE(world->create_deformable(sheet).ok());
+        const double start = energy(*world);
+        for (int i = 0; i < 60; ++i) {
+            world->step();
+            ASSERT_LT(energy(*world), 1.01 * start) << kind.index() << " " << i;
+            ASSERT_LT(length(world->pose(light).position - Vec3{0, 1, 0}), 2e-3) << kind.index() << " " << i;
+        }
+    }
+}
+
 // 50 g under 50 kg: what it is pressed with is a thousand times its weight.
 TEST(LightBodies, ABoxOnTheGroundStaysThereUnderAHeavySheet) {
     for (const double start_height : {0.1, 0.5}) {

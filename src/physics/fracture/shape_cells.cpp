@@ -13,7 +13,7 @@ namespace embody::physics::fracture {
 namespace {
 
 // Points around a rim, and rings from the middle of a ball to its pole: pieces of what is round look round, and a cell
-// has few corners.
+// has few corners. Numbers of points; what they cost of the volume: SplitSolid.RoundShapesLoseLittle.
 constexpr int rim_points = 24, ball_rings = 5;
 
 void add_rim(std::vector<Vec3>& points, double radius, double height) {

@@ -15,12 +15,13 @@ namespace embody::physics::fracture {
 namespace {
 
 // Corners so near to a plane, as a fraction of the solid's size, count as on it: rounding of their places is 1e-16.
+// Test: SplitSolid.ACutThroughCornersAddsNone.
 constexpr double plane_tolerance = 1e-12;
 // Solids of a cell closer than this fraction of the size are one piece; parts of a decomposition share faces, whose
-// corners are floats.
+// corners are floats. Test: SplitSolid.WhatIsNotConnectedInACellIsSeparatePieces.
 constexpr double contact_tolerance = 1e-5;
 // What is smaller than this fraction of the mean piece is no body of its own: dust, whose contacts would cost as much
-// as those of a piece.
+// as those of a piece. Test: SplitSolid.DustIsNoPiece.
 constexpr double dust_fraction = 1e-3;
 
 Bounds bounds_of(std::span<const ConvexCell> solids) {

@@ -132,6 +132,31 @@ TEST(SplitSolid, CountsACrackOnce) {
     for (const Piece& piece : split.pieces) EXPECT_NEAR(piece.solid.volume, 4, 1e-12);
 }
 
+// A corner of 5e-6 m³ of a cube of 8 is no piece: the rest carries it.
+TEST(SplitSolid, DustIsNoPiece) {
+    const auto cube = cells_of(BoxShape{{1, 1, 1}}).value();
+    const Split split = split_solid(cube, std::vector<Vec3>{{0.98, 0.98, 0.98}, {1, 1, 1}});
+    ASSERT_EQ(split.pieces.size(), 1u);
+    EXPECT_NEAR(split.pieces[0].solid.volume, 8, 1e-12);
+}
+
+// Cut along its diagonal a cube becomes two prisms of six corners, however it is turned: rounding makes no others.
+TEST(SplitSolid, ACutThroughCornersAddsNone) {
+    Random random(4);
+    for (int run = 0; run < 50; ++run) {
+        const Quat turn = from_axis_angle(normalized(random_point(random, 1)), random.between(0, 3));
+        HullShape cube;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 at{corner & 1 ? 0.1 : -0.1, corner & 2 ? 0.1 : -0.1, corner & 4 ? 0.1 : -0.1};
+            cube.points.push_back(rotate(turn, at));
+        }
+        const std::vector<Vec3> seeds{rotate(turn, {0.05, -0.05, 0}), rotate(turn, {-0.05, 0.05, 0})};
+        const Split split = split_solid(cells_of(cube).value(), seeds);
+        ASSERT_EQ(split.pieces.size(), 2u);
+        for (const Piece& piece : split.pieces) EXPECT_EQ(piece.hulls.at(0).size(), 6u) << run;
+    }
+}
+
 // A table whose top is one cell's: its legs, cut off from each other, are pieces of their own.
 TEST(SplitSolid, WhatIsNotConnectedInACellIsSeparatePieces) {
     CompoundShape table{{{BoxShape{{1, 0.1, 0.1}}, {{0, 1.1, 0}, {}}},
