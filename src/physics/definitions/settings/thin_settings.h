@@ -14,6 +14,12 @@ struct ClothSettings {
     /// Residual at which a solve ends, over that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.
     /// Witkin, "Large steps in cloth simulation", 1998, section 5.3, end in that norm too. Test: Settings.AreNoticed.
     double gradient_tolerance = 5e-3;
+    /// Energy of stretch that a solve's linear equations did not foresee, over that of the sheet's motion, above which
+    /// the next solve is about the moves found. Test: ClothLanding.NothingIsGainedWhereASheetLands.
+    double stretch_tolerance = 0.05;
+    /// The same above which the substep is taken in parts at once. Source: more than all that it has is no measure of
+    /// the next solve. Test: Settings.AreNoticed.
+    double max_stretch = 1;
     /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
     /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
@@ -34,6 +40,8 @@ inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"max_solves", &ClothSettings::max_solves, 1, 1000},
     Setting{"max_meeting_solves", &ClothSettings::max_meeting_solves, 0, 1000},
     Setting{"gradient_tolerance", &ClothSettings::gradient_tolerance, 1e-12, 1e3},
+    Setting{"stretch_tolerance", &ClothSettings::stretch_tolerance, 0, 1e9},
+    Setting{"max_stretch", &ClothSettings::max_stretch, 0, 1e9},
     Setting{"max_gradient_iterations", &ClothSettings::max_gradient_iterations, 1, 1e6},
     Setting{"max_parts", &ClothSettings::max_parts, 1, 64},
     Setting{"max_layer_travel", &ClothSettings::max_layer_travel, 1e-3, 1e3},
