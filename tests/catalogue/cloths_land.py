@@ -60,6 +60,9 @@ def main() -> int:
         chance = random.Random(seed)
         model = chance.choice(models)
         energy = energies(options.embody, options.database, scene_of(model, chance))
+        if not all(math.isfinite(now) and now > 0 for now in energy):
+            wrong.append(f"seed {seed}: a cloth on {model['key']} has numbers that are none")
+            continue
         lowest, gain = energy[0], 0
         for now in energy:
             gain = max(gain, now - lowest)

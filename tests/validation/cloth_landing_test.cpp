@@ -58,6 +58,7 @@ TEST(ClothLanding, NothingIsGainedWhereASheetLands) {
         for (int i = 0; i < 90; ++i) {
             scene.world->step();
             const double now = energy(*scene.world);
+            ASSERT_TRUE(std::isfinite(now)) << seed << " " << i;
             gain = std::max(gain, (now - lowest) / start);
             lowest = std::min(lowest, now);
         }
@@ -90,6 +91,13 @@ TEST(ClothLanding, ATowelOverAThinWallComesToRest) {
     }
     RecordProperty("s until it sleeps", std::to_string(steps / 60.0));
     EXPECT_TRUE(world->is_asleep(sheet));
+    // It hangs on the wall, whose top is at 1 m, with both ends above the ground.
+    double top = 0;
+    for (const Vec3 node : world->node_positions(sheet)) {
+        EXPECT_GT(node.y, 0.05);
+        top = std::max(top, node.y);
+    }
+    EXPECT_GT(top, 1);
 }
 
 }  // namespace

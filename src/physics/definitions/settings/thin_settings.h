@@ -7,7 +7,8 @@ namespace embody::physics {
 
 /// Sheets and how their own layers are kept apart (src/physics/deformable/cloth, docs/physics/cloth.md).
 struct ClothSettings {
-    /// Maximum linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
+    /// Maximum linear solves in a substep, as long as contacts change in them or stretch is unforeseen. Test:
+    /// Settings.AreNoticed.
     int max_solves = 8;
     /// Further solves in a substep with contacts of what would pass through each other. Test: Settings.AreNoticed.
     int max_meeting_solves = 4;
@@ -17,12 +18,13 @@ struct ClothSettings {
     /// Energy of stretch that a solve's linear equations did not foresee, over that of the sheet's motion, above which
     /// the next solve is about the moves found. Test: ClothLanding.NothingIsGainedWhereASheetLands.
     double stretch_tolerance = 0.05;
-    /// The same above which the substep is taken in parts at once. Source: more than all that it has is no measure of
-    /// the next solve. Test: Settings.AreNoticed.
+    /// The same above which the substep is taken in parts at once. Source: moves that would take more energy than there
+    /// is are no place to solve about. Test: Settings.AreNoticed.
     double max_stretch = 1;
     /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
-    /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
+    /// Maximum parts of a substep, for fast layers and for stretch that solves do not foresee. Test:
+    /// Settings.AreNoticed.
     int max_parts = 16;
     /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
     /// an edge a node comes to a triangle that was no candidate. Test: Settings.AreNoticed.

@@ -14,8 +14,8 @@
 
 namespace embody::physics::deformable {
 
-/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with one linear
-/// solve for the elastic forces a substep (docs/physics/cloth.md).
+/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with linear
+/// solves for the elastic forces (docs/physics/cloth.md).
 class ClothSheet {
 public:
     /// `definition` is valid and its matter is cloth.
@@ -31,14 +31,14 @@ public:
     void linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     /// What stretch and shear take more for these moves than system() says, J: none of what they take less.
     [[nodiscard]] double unforeseen_energy(std::span<const Vec3> moves, TaskPool& workers);
-    /// The sheet's equations for the solve, valid until the next begin() or linearize().
+    /// The sheet's equations for the solve, those of the last linearize(), valid until the next begin().
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] ClothLayers& layers() { return *layers_; }
     [[nodiscard]] const ClothLayers& layers() const { return *layers_; }
     /// Where it may touch itself in the part, by the motion of its nodes.
     [[nodiscard]] std::vector<ThinCandidate> near_layers(const Substep& substep, TaskPool& workers);
-    /// Stiffness of each node alone, N/m, since begin().
+    /// Stiffness of each node alone by these equations, N/m.
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Ends it with these moves (m), which touch() was solved with, and changes them where the solve could not know.
     /// Pushes the bodies.

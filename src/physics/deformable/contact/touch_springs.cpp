@@ -257,10 +257,9 @@ void TouchSprings::bring_back(const Substep& substep, TouchSpring& spring) const
 void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) const {
     const ThinContactSettings& settings = substep.settings.thin_contact;
     if (is_with_body) spring.pull = spring.hold = {};
-    const double g = length(substep.gravity), squared = substep.h * substep.h;
-    const double most = g * max_load_, pull = length(spring.pull);
-    if (pull > most) spring.pull *= most / pull;
-    const double carried = g > 0 ? std::min(pull, most) / g : 0;
+    const double g = std::max(length(substep.gravity), settings.min_gravity), squared = substep.h * substep.h;
+    const double pull = length(spring.pull), carried = std::min(pull / g, max_load_);  // kg
+    if (pull > g * carried) spring.pull *= g * carried / pull;
     spring.stiffness =
         std::max(settings.stiffness_factor * spring.inertia, settings.load_stiffness_factor * carried / squared);
     spring.inertia = 1 / (compliance * squared);
@@ -333,7 +332,10 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
                          const Substep& substep, std::span<const double> node_stiffness) {
     const ThinContactSettings& settings = substep.settings.thin_contact;
     max_load_ = std::accumulate(nodes.mass.begin(), nodes.mass.end(), 0.0);
-    for (const TouchedBody& body : bodies) max_load_ += body.inverse_mass > 0 ? 1 / body.inverse_mass : 0;
+    std::vector<bool> is_near(bodies.size(), false);
+    for (const NodeContact& contact : contacts) is_near[contact.body] = true;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        max_load_ += is_near[b] && bodies[b].inverse_mass > 0 ? 1 / bodies[b].inverse_mass : 0;
     places_.clear();
     for (const TouchedBody& body : bodies) places_.push_back(place_of(body, substep));
     springs_.clear();

@@ -208,7 +208,7 @@ private:
 
     std::vector<TouchSpring> springs_;
     std::vector<Memory> memory_;  // by feature
-    double max_load_ = 0;         // mass of the nodes and of bodies that move, kg
+    double max_load_ = 0;         // mass of the nodes and of the bodies beside them that move, kg
     std::vector<Place> places_;   // of the bodies, at the substep's end
     std::vector<Vec3> leads_;     // of the springs, by the solve's moves
 };

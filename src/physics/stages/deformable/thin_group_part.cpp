@@ -246,25 +246,27 @@ void ThinGroupPart::settle_bodies(std::span<const BodyInertia> inertias) {
 }
 
 // The energy that the solved moves stretch a sheet by beyond what its linear equations say, over that of the motion of
-// the sheet and of what pushes it: where a corner stops some of the nodes, the others fly on across the sheet, and only
-// what turns with the triangles sees the stretch.
+// the sheet and of the bodies on it: where a corner stops some of the nodes, the others fly on across the sheet, which
+// stretches it to second order only.
 double ThinGroupPart::unforeseen_stretch(const Member& member, std::span<const TouchedBody> bodies) {
     ClothSheet& sheet = *member.record().cloth();
     const double stretch = sheet.unforeseen_energy(part(moves_, member), world_.workers);
     if (!(stretch > 0)) return 0;
-    const double fall = length_squared(h_ * member.substep.gravity);  // m²/s²
+    const double gravity = std::max(length(member.substep.gravity), member.substep.settings.thin_contact.min_gravity);
+    const double fall = h_ * h_ * gravity * gravity;  // m²/s²
     const Nodes& nodes = sheet.nodes();
     double motion = 0;  // J
     for (std::size_t i = 0; i < nodes.size(); ++i)
         motion += nodes.mass[i] / 2 * (length_squared(nodes.mean_velocity[i]) + fall);
-    std::vector<std::uint8_t> is_counted(bodies.size(), 0);
+    std::vector<bool> is_counted(bodies.size(), false);
     for (const TouchSpring& spring : member.touch.springs()) {
-        if (!spring.acts || spring.body >= bodies.size() || is_counted[spring.body]++ != 0) continue;
+        if (!spring.acts || spring.body >= bodies.size() || is_counted[spring.body]) continue;
+        is_counted[spring.body] = true;
         const TouchedBody& body = bodies[spring.body];
         if (body.inverse_mass > 0)
             motion += (length_squared(body.path_velocity + body.velocity) + fall) / (2 * body.inverse_mass);
     }
-    return stretch / std::max(motion, std::numeric_limits<double>::min());
+    return stretch / motion;
 }
 
 // Makes the equations of sheets anew about the solved moves where these were not foreseen, or says that the substep
@@ -364,7 +366,7 @@ bool ThinGroupPart::are_finite() const {
                                [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
-// Ropes about their last moves, as in Newton's method.
+// Ropes about their last moves, as in Newton's method, and sheets where these were not foreseen.
 ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies, bool is_shortest) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
     const double move_tolerance = settings.rope.move_tolerance_together;  // of a segment's length
@@ -393,7 +395,10 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
         bool has_changed = choose_again(is_last_solve) || travel >= move_tolerance;
         const Stretch stretch = linearize_again(is_last_solve, !is_shortest, bodies);
         if (stretch == Stretch::too_far) return Outcome::too_fast;
-        has_changed |= stretch == Stretch::unforeseen;
+        if (stretch == Stretch::unforeseen) {
+            has_changed = true;
+            least = std::numeric_limits<double>::infinity();  // that of other equations
+        }
         if (has_changed && has_ropes()) {
             if (const double left = energy(sheets, inertias, energy_pressed); left < least) {
                 least = left;

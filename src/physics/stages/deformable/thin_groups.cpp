@@ -80,10 +80,10 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
-// In parts where things meet fast: half as long until they can be solved, then longer again.
+// In parts where things meet fast or are stretched far: half as long until they can be solved, then longer again.
 void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                       double time, std::vector<TouchedBody>& bodies) {
-    // Counted in the shortest: what is left of sums of parts is no rounding of theirs, which would be a part, too.
+    // Counted in the shortest: summed up in seconds, their rounding would be left over as one more part.
     const int count = world.settings.solver.deformable.cloth.max_parts;
     int done = 0, size = count;
     while (done < count) {
