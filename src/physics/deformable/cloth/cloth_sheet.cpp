@@ -137,12 +137,13 @@ ClothSheet::Images ClothSheet::images_of(const ClothTriangle& triangle, std::spa
     return images;
 }
 
-// Energy of stretch and shear per area, J/m², and its derivatives by f and g, N/m.
+// Of stretch and shear per area, J/m².
 double ClothSheet::energy_of(const Images& images) const {
     const double warp = length(images.f) - 1, weft = length(images.g) - 1, angle = dot(images.f, images.g);
     return (cloth_.stretch_stiffness * (warp * warp + weft * weft) + cloth_.shear_stiffness * angle * angle) / 2;
 }
 
+// Derivatives of that energy by f and g, N/m.
 ClothSheet::Images ClothSheet::stress_of(const Images& images) const {
     const auto stretched = [&](Vec3 image, Vec3 along) {
         return cloth_.stretch_stiffness * (length(image) - 1) * along;

@@ -251,7 +251,7 @@ void TouchSprings::bring_back(const Substep& substep, TouchSpring& spring) const
 }
 
 // As between sheets (pair_springs.cpp): by its inertia and by that of the load on it. That follows the force, so both
-// would grow exponentially where something else holds the point: no contact remembers more than the weight of all. A
+// would grow exponentially where something else holds the point: none remembers more than max_load_'s weight. A
 // body's inertia would need stiffer springs than these: with memory their oscillations would grow, so they have no
 // memory.
 void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) const {
