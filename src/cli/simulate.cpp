@@ -189,7 +189,7 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     if (reached(StepLimit::fluid_particles_lost))
         print_line("note: liquid flowed so far away that it was removed; a floor or walls keep it");
     if (reached(StepLimit::fluid_source_waits))
-        print_line("note: a source waited, as its liquid has as many drops as it allows");
+        print_line("note: a tap waited, as its liquid has as many drops as its particle_budget allows");
     if (reached(StepLimit::impact_iterations_exhausted))
         print_line("note: an impact needed more iterations than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))

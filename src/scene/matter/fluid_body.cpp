@@ -22,6 +22,7 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     made->force_ = definition.force;
     made->set_cell_size_ = definition.set_cell_size;
     made->has_run_ = !definition.places.empty();
+    made->particle_budget_ = definition.particle_budget;
     Result<std::vector<Vec3>> places =
         definition.places.empty() ? made->fill(definition) : Result<std::vector<Vec3>>(definition.places);
     if (!places.ok()) return places.error();
@@ -31,7 +32,9 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
         place = transform_point(definition.pose, place);
         bounds.add(place);
     }
+    made->room_ = bounds;
     std::vector<Particle> particles;
+    if (definition.starts_empty) places.value().clear();
     particles.reserve(places.value().size());
     for (const Vec3 position : places.value())
         particles.push_back(
@@ -80,7 +83,9 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
     std::vector<Vec3> places;
     places.reserve(particles.size());
     for (const Particle& particle : particles) places.push_back(particle.position);
-    const Result<Liquids::Part*> part = has_run_ ? liquids_.add_again(matter_, places) : liquids_.add(matter_, places);
+    const Result<Liquids::Part*> part = places.empty() ? liquids_.add_empty(matter_, room_)
+                                        : has_run_     ? liquids_.add_again(matter_, places)
+                                                       : liquids_.add(matter_, places);
     if (!part.ok())
         return Error{"shape", "holds no liquid: " + part.error().why,
                      "place it outside of solid things, or make it larger"};
@@ -127,6 +132,20 @@ std::size_t FluidBody::count() const { return part_ ? liquids_.particles_of(*par
 void FluidBody::read(std::vector<Vec3>& positions) const {
     positions.clear();
     for (const Particle& particle : particles()) positions.push_back(particle.position);
+}
+
+void FluidBody::read_velocities(std::vector<Vec3>& velocities) const {
+    velocities.clear();
+    for (const Particle& particle : particles()) velocities.push_back(particle.velocity);
+}
+
+// From what has come and what is there follows what has gone.
+std::uint64_t FluidBody::membership() const {
+    return (part_ ? part_->poured : 0) * (physics::max_fluid_particles + 1) + count();
+}
+
+std::size_t FluidBody::max_drops() const {
+    return particle_budget_ * (join_ == Join::joined ? max_particles_ratio : 1);
 }
 
 double FluidBody::particle_mass() const {
@@ -203,7 +222,13 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
 
 Result<void> FluidBody::move(const Transform& motion) {
     for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
+    room_ = transformed(motion, room_);
     if (!part_) return {};
+    if (count() == 0) {
+        // Nothing is there to be moved: it begins anew there.
+        liquids_.remove(std::exchange(part_, nullptr));
+        return put({});
+    }
     Result<void> moved =
         world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
             position = transform_point(motion, position);
@@ -217,19 +242,10 @@ Result<void> FluidBody::move(const Transform& motion) {
 Result<void> FluidBody::set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
     if (!part_) return Error{"positions", "cannot be set while the liquid is disabled"};
     if (velocities.size() != positions.size()) return Error{"velocities", "must be as many as positions"};
-    // The ids of its drops are told in ascending order, as read() tells them; lost ones have none.
-    const FluidParticles all = world_.fluid_particles(part_->fluid);
-    std::vector<std::uint32_t> ids;
-    for (const std::uint32_t i : liquids_.particles_of(*part_)) ids.push_back(all.ids[i]);
-    Result<void> changed =
-        world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t id, Vec3& position, Vec3& velocity) {
-            const auto at = static_cast<std::size_t>(std::ranges::lower_bound(ids, id) - ids.begin());
-            if (at >= positions.size()) return false;
-            position = positions[at];
-            velocity = velocities[at];
-            return true;
-        });
-    if (!changed.ok()) return changed;
+    std::vector<physics::FluidDrop> drops;
+    drops.reserve(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) drops.push_back({positions[i], velocities[i]});
+    if (Result<void> set = liquids_.set_drops(*part_, drops); !set.ok()) return set;
     return liquids_.regroup(*part_);
 }
 
@@ -244,7 +260,7 @@ Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
 }
 
 Result<void> FluidBody::apply_impulse(Vec3 impulse) {
-    if (!part_) return {};
+    if (!part_ || count() == 0) return {};
     const Vec3 change = impulse / mass();
     return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
         velocity += change;

@@ -21,6 +21,8 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override;  ///< of a ball with a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
+    void read_velocities(std::vector<Vec3>& velocities) const override;
+    [[nodiscard]] std::uint64_t membership() const override;
     /// Of the cells that its particles are made for, m.
     [[nodiscard]] double cell_size() const { return matter_.cell_size; }
     /// Cells whose sizes differ by no more than this factor, 1.26 in volume, count as the same.
@@ -30,6 +32,10 @@ public:
     [[nodiscard]] Join join() const { return join_; }
     /// The fluid of the world that its particles belong to; null while it is disabled.
     [[nodiscard]] physics::FluidHandle fluid() const { return part_ ? part_->fluid : physics::FluidHandle{}; }
+    /// Its particles in that fluid; null while it is disabled.
+    [[nodiscard]] Liquids::Part* part() const { return part_; }
+    /// Taps wait while it has so many.
+    [[nodiscard]] std::size_t max_drops() const;
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
@@ -66,6 +72,8 @@ private:
     physics::FluidDefinition matter_;
     Vec3 force_;                ///< constant, N
     double set_cell_size_ = 0;  ///< m, told by hand; 0: none
+    std::size_t particle_budget_ = 0;
+    Bounds room_;  ///< where it began, m, world: where it is to be while it has no particle
     Join join_ = Join::none_other;
     Liquids::Part* part_ = nullptr;  ///< null while it is disabled
     std::vector<Particle> kept_;     ///< state of the particles while it is disabled

@@ -46,11 +46,20 @@ double cells_of(const Bounds& bounds, double cell) {
 
 }  // namespace
 
+Bounds Liquids::bounds_of(SharedFluid& shared) {
+    locate(shared);
+    Bounds bounds = world_.fluid_particles(shared.fluid).bounds;
+    for (const auto& part : shared.parts)
+        if (part->places.empty()) bounds.add(part->start);
+    return bounds;
+}
+
 Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
     for (SharedFluid& shared : fluids_) {
         if (shared.fluid == wish.except) continue;
         const FluidDefinition& other = *world_.fluid(shared.fluid);
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
+        const Bounds bounds = bounds_of(shared);
         const bool is_moved_alike =
             wish.matter.gravity_factor == other.gravity_factor && wish.matter.allow_sleep == other.allow_sleep;
         if (!is_moved_alike || particles.is_frozen) continue;
@@ -59,11 +68,11 @@ Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
         };
         const auto is_same = [&](const auto& part) { return part->matter == matter_of(wish.matter); };
         const bool are_layers = wish.ratio_limit > 1 && std::ranges::none_of(shared.parts, is_same) &&
-                                are_above_each_other(particles.bounds, wish.bounds);
+                                are_above_each_other(bounds, wish.bounds);
         if (!are_within(wish.matter.cell_size / other.cell_size, wish.ratio_limit) && !are_layers &&
             std::ranges::none_of(shared.parts, is_set_alike))
             continue;
-        Bounds both = particles.bounds;
+        Bounds both = bounds;
         both.add(wish.bounds);
         if (cells_of(both, other.cell_size) < max_cells) return &shared;
     }
@@ -81,6 +90,7 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     auto part = std::make_unique<Part>();
     Part* added = part.get();
     part->matter = matter_of(matter);
+    part->start = bounds;
     if (const SharedFluid* shared = to_join({matter, bounds})) {
         part->fluid = shared->fluid;
         const Result<physics::FluidIds> ids = add_particles(*part, places);
@@ -94,6 +104,28 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
         const auto count = static_cast<std::uint32_t>(world_.fluid_particles(fluid.value()).ids.size());
         part->fluid = fluid.value();
         part->ids = {0, count};
+    }
+    put(std::move(part));
+    return added;
+}
+
+Result<Liquids::Part*> Liquids::add_empty(const FluidDefinition& matter, const Bounds& bounds) {
+    auto part = std::make_unique<Part>();
+    Part* added = part.get();
+    part->matter = matter_of(matter);
+    part->start = bounds;
+    if (const SharedFluid* shared = to_join({matter, bounds})) {
+        part->fluid = shared->fluid;
+        const Result<physics::FluidIds> ids = world_.make_room(part->fluid, {}, 0);
+        if (!ids.ok()) return ids.error();
+        part->ids = ids.value();
+    } else {
+        FluidDefinition definition = matter;
+        definition.points = {bounds.lower, bounds.upper};
+        definition.starts_empty = true;
+        const Result<FluidHandle> fluid = world_.create_fluid(definition);
+        if (!fluid.ok()) return fluid.error();
+        part->fluid = fluid.value();
     }
     put(std::move(part));
     return added;
@@ -167,6 +199,43 @@ void Liquids::put(std::unique_ptr<Part> part) {
     shared->version = 0;
 }
 
+// The part is the last one then; its ids have no room.
+void Liquids::set_newest_ids(Part& part, physics::FluidIds ids) {
+    SharedFluid& shared = *find(part.fluid);
+    const auto at = std::ranges::find_if(shared.parts, [&](const auto& other) { return other.get() == &part; });
+    std::rotate(at, at + 1, shared.parts.end());
+    shared.version = 0;
+    part.ids = ids;
+    part.room = {};
+    part.used_room = 0;
+}
+
+Result<void> Liquids::make_room(Part& part, std::uint32_t count) {
+    if (part.room.last - part.room.first - part.used_room >= count) return {};
+    // Doubled each time, so that the ids of a particle change a few times only.
+    constexpr std::size_t min_room = 4096;
+    const auto room = static_cast<std::uint32_t>(std::max({std::size_t{count}, min_room, particles_of(part).size()}));
+    const Result<physics::FluidIds> ids = world_.make_room(part.fluid, part.ids, room);
+    if (!ids.ok()) return ids.error();
+    set_newest_ids(part, ids.value());
+    part.room = {ids.value().last - room, ids.value().last};
+    return {};
+}
+
+void Liquids::count_poured(Part& part, std::uint64_t count) {
+    part.poured += count;
+    part.used_room += static_cast<std::uint32_t>(count);
+}
+
+Result<void> Liquids::set_drops(Part& part, std::span<const physics::FluidDrop> drops) {
+    const Result<physics::FluidIds> ids = world_.add_drops(part.fluid, drops);
+    if (!ids.ok()) return ids.error();
+    const auto remove = [](std::uint32_t, Vec3&, Vec3&) { return false; };
+    if (Result<void> removed = world_.change_fluid(part.fluid, part.ids, remove); !removed.ok()) return removed;
+    set_newest_ids(part, ids.value());
+    return world_.set_liquid(part.fluid, part.ids, part.matter);
+}
+
 // Removes the part from its fluid's list, and the list with its last part.
 std::unique_ptr<Liquids::Part> Liquids::take(Part& part) {
     const auto shared = find(part.fluid);
@@ -221,6 +290,8 @@ Result<void> Liquids::hand_over(Part& part, FluidHandle to) {
     std::unique_ptr<Part> taken = take(part);
     taken->fluid = moved.value().fluid;
     taken->ids = moved.value().ids;
+    taken->room = {};
+    taken->used_room = 0;
     put(std::move(taken));
     return {};
 }

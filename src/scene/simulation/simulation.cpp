@@ -138,7 +138,9 @@ const physics::StepReport& Simulation::step() {
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
     state.liquids.push(state.world->settings().time_step);
+    state.set_ports();
     const physics::StepReport& report = state.world->step();
+    state.count_ports();
     state.take_pieces();
     state.liquids.separate_distant();
     const auto sleeps = state.world->sleep_events();
@@ -199,6 +201,9 @@ std::vector<std::string> Simulation::notes() const {
     std::vector<std::string> notes;
     for (const auto& [note, count] : told)
         notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
+    for (const PortFault& fault : port_faults())
+        notes.push_back(name_of(fault.entity, state_->live.at(fault.entity)) + ": " + fault.error.where + " " +
+                        fault.error.why + ": nothing goes through it.");
     add_notes_of_liquids(liquids, notes);
     return notes;
 }

@@ -56,18 +56,25 @@ std::int64_t read_signed(const char*& at) {
     return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
 }
 
-std::vector<std::int32_t> places_of(const ShownPoints& points) {
+// `scale`: the units of a value.
+std::vector<std::int32_t> in_units(const std::vector<Vec3>& values, double scale) {
     constexpr double most = 2e9;
-    std::vector<Vec3> positions;
-    points.read(positions);
-    std::vector<std::int32_t> places;
-    places.reserve(3 * positions.size());
-    for (const Vec3 p : positions)
+    std::vector<std::int32_t> numbers;
+    numbers.reserve(3 * values.size());
+    for (const Vec3 p : values)
         for (const double value : {p.x, p.y, p.z}) {
-            const double units = std::isfinite(value) ? value * RecordedPoints::units_per_metre : 0;
-            places.push_back(static_cast<std::int32_t>(std::lround(std::clamp(units, -most, most))));
+            const double units = std::isfinite(value) ? value * scale : 0;
+            numbers.push_back(static_cast<std::int32_t>(std::lround(std::clamp(units, -most, most))));
         }
-    return places;
+    return numbers;
+}
+
+// Where points come to by their steps; null where they have none.
+RecordedPoints::Places led_on(const RecordedPoints::Places& points, const RecordedPoints::Places& steps) {
+    if (!steps) return nullptr;
+    auto to = std::make_shared<std::vector<std::int32_t>>(*points);
+    for (std::size_t i = 0; i < to->size(); ++i) (*to)[i] += (*steps)[i];
+    return to;
 }
 
 }  // namespace
@@ -88,7 +95,11 @@ void RecordedPoints::read(std::vector<Vec3>& positions) const {
 // Samples
 // --------------------------------------------------------------------------------------------------------------
 
-Take::Track Take::quantised(const EntityMotion& motion, const Track* before, std::uint64_t number) {
+bool Take::are_same_points(const Track& a, const Track& b) {
+    return a.has_points && b.has_points && a.points->size() == b.points->size() && a.membership == b.membership;
+}
+
+Take::Track Take::quantised(const EntityMotion& motion, const Track* before, std::uint64_t number, double interval) {
     Track track;
     const Vec3 p = motion.pose.position, v = motion.linear_velocity, w = motion.angular_velocity;
     Quat q = normalized(motion.pose.rotation);
@@ -113,14 +124,25 @@ Take::Track Take::quantised(const EntityMotion& motion, const Track* before, std
     track.has_points = true;
     track.is_liquid = motion.points->is_liquid();
     track.radius = static_cast<float>(motion.points->radius());
+    track.membership = motion.points->membership();
     constexpr std::uint8_t asleep = 2;
     const bool had_points = before && before->has_points;
-    if (had_points && before->state == asleep && motion.state == asleep) {
+    if (had_points && before->state == asleep && motion.state == asleep && before->membership == track.membership) {
         track.points = before->points;
         return track;
     }
-    track.points = std::make_shared<std::vector<std::int32_t>>(places_of(*motion.points));
-    if (!had_points || before->points->size() != track.points->size()) return track;
+    std::vector<Vec3> values;
+    motion.points->read(values);
+    track.points = std::make_shared<std::vector<std::int32_t>>(in_units(values, RecordedPoints::units_per_metre));
+    if (!had_points) return track;
+    if (!are_same_points(track, *before)) {
+        // No point has a place before that could be found: its step is that of its velocity.
+        motion.points->read_velocities(values);
+        if (3 * values.size() == track.points->size() && interval > 0)
+            track.point_steps = std::make_shared<std::vector<std::int32_t>>(
+                in_units(values, RecordedPoints::units_per_metre * interval));
+        return track;
+    }
     auto steps = std::make_shared<std::vector<std::int32_t>>(track.points->size());
     for (std::size_t i = 0; i < steps->size(); ++i) (*steps)[i] = (*track.points)[i] - (*before->points)[i];
     track.point_steps = std::move(steps);
@@ -134,9 +156,8 @@ bool Take::is_same(const Track& a, const Track& b) {
 
 // A whole track stands alone; another one is the difference from what `before` leads to.
 void Take::write(std::string& data, const Track& track, const Track* before, std::uint64_t number) {
-    const bool same_points =
-        before && before->has_points == track.has_points &&
-        (!track.has_points || (before->points->size() == track.points->size() && before->radius == track.radius));
+    const bool same_points = before && before->has_points == track.has_points &&
+                             (!track.has_points || (are_same_points(track, *before) && before->radius == track.radius));
     const bool is_whole = !same_points;
     data.push_back(static_cast<char>(track.state | (track.has_points ? points_bit : 0) | (is_whole ? whole_bit : 0) |
                                      (track.is_liquid ? liquid_bit : 0)));
@@ -174,6 +195,7 @@ Take::Track Take::read(const char*& at, const Track* before, std::uint64_t numbe
     EMBODY_ASSERT(is_whole || before != nullptr);
     track.state = bits & state_bits;
     track.has_points = (bits & points_bit) != 0;
+    track.is_renewed = is_whole && before != nullptr;
     track.is_liquid = (bits & liquid_bit) != 0;
     track.written = number;
     const bool goes_on = !is_whole && before->written + 1 == number;
@@ -232,6 +254,7 @@ void Take::drop_oldest() {
 }
 
 void Take::sample(const Simulation& simulation) {
+    const double before = end();
     if (!is_open_) begin_chunk();
     Chunk& chunk = chunks_.back();
     const bool is_first = chunk.samples.empty();
@@ -252,7 +275,8 @@ void Take::sample(const Simulation& simulation) {
     simulation.visit([&](const EntityMotion& motion) {
         skip_removed(motion.entity);
         const bool is_known = known != tracks_.end() && known->first == motion.entity;
-        Track track = quantised(motion, is_known ? &known->second : nullptr, number_);
+        Track track =
+            quantised(motion, is_known ? &known->second : nullptr, number_, chunk.samples.back().time - before);
         if (is_known && is_same(track, known->second)) {
             // At rest since the last sample.
             known->second.point_steps = nullptr;
@@ -392,10 +416,12 @@ Moment Take::moment(const Cursor& cursor, double time, const std::set<EntityInde
         made.motion.linear_velocity = Vec3{number(7), number(8), number(9)} / velocity_units;
         made.motion.angular_velocity = Vec3{number(10), number(11), number(12)} / velocity_units;
         if (!track.has_points) continue;
-        made.points = std::make_shared<RecordedPoints>(track.points, next ? next->points : nullptr, part, track.radius,
-                                                       track.is_liquid);
-        made.motion.points = made.points.get();
         if (track.written == cursor.chunk->number + cursor.sample) made.point_steps = track.point_steps;
+        RecordedPoints::Places to = next ? next->points : nullptr;
+        if (next && next->is_renewed) to = led_on(track.points, made.point_steps);
+        made.points =
+            std::make_shared<RecordedPoints>(track.points, std::move(to), part, track.radius, track.is_liquid);
+        made.motion.points = made.points.get();
     }
     return moment;
 }
