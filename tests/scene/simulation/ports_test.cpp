@@ -241,35 +241,6 @@ TEST_P(Ports, AMomentOfATakeHasTheDropsOfItsStep) {
     }
 }
 
-// What is kept and what is saved: the next run begins with the drops but single ones that stand in a solid alone, which
-// Liquids::add_again leaves out.
-TEST_P(Ports, AKeptFormHasItsDropsThroughAFile) {
-    Random random(GetParam() + 401);
-    Scene scene = random_scene(random);
-    const auto simulation = make(scene.document);
-    ASSERT_TRUE(simulation);
-    samples::step(*simulation, 60);
-    for (Entity& entity : scene.document.entities) {
-        entity.kept = simulation->kept_form(entity.index);
-        entity.pose = simulation->pose(entity.index);
-    }
-    const auto read = document_from_json(document_to_json(scene.document));
-    ASSERT_TRUE(read.ok()) << read.error().message();
-    const auto again = make(read.value());
-    ASSERT_TRUE(again);
-    EXPECT_TRUE(again->notes().empty()) << again->notes().front();
-    for (const EntityIndex liquid : {scene.water, scene.oil}) {
-        const std::size_t kept = points_of(*again, liquid).size(), was = points_of(*simulation, liquid).size();
-        EXPECT_LE(kept, was);
-        EXPECT_GE(kept + was / 500, was);
-    }
-    const std::int64_t before = balance(*again, scene);
-    for (int i = 0; i < 30; ++i) {
-        again->step();
-        ASSERT_EQ(balance(*again, scene), before);
-    }
-}
-
 INSTANTIATE_TEST_SUITE_P(Seeds, Ports, testing::Range(0u, 8u));
 
 TEST(PortsTest, ATubIsFilledAndEmptiedAndKeptEmpty) {
