@@ -56,13 +56,10 @@ public:
     Result<void> set_enabled(bool enabled) override;
 
 private:
-    struct Particle {
-        Vec3 position, velocity;
-    };
     FluidBody(physics::World& world, Liquids& liquids) : world_(world), liquids_(liquids) {}
-    [[nodiscard]] std::vector<Particle> particles() const;  ///< in the order of their ids
+    [[nodiscard]] std::vector<physics::FluidDrop> particles() const;  ///< in the order of their ids
     [[nodiscard]] std::size_t count() const;
-    Result<void> put(const std::vector<Particle>& particles);
+    Result<void> put(const std::vector<physics::FluidDrop>& particles);
     [[nodiscard]] double particle_mass() const;
     /// Fills the shape: sets the cell size and returns the places of the particles, in the shape's frame, m.
     Result<std::vector<Vec3>> fill(const LiquidDefinition& definition);
@@ -75,9 +72,9 @@ private:
     std::size_t particle_budget_ = 0;
     Bounds room_;  ///< where it began, m, world: where it is to be while it has no particle
     Join join_ = Join::none_other;
-    Liquids::Part* part_ = nullptr;  ///< null while it is disabled
-    std::vector<Particle> kept_;     ///< state of the particles while it is disabled
-    bool has_run_ = false;           ///< whether kept_ is of a run, and not as it was filled
+    Liquids::Part* part_ = nullptr;         ///< null while it is disabled
+    std::vector<physics::FluidDrop> kept_;  ///< state of the particles while it is disabled
+    bool has_run_ = false;                  ///< whether kept_ is of a run, and not as it was filled
 };
 
 /// Null for points that are no liquid, and for a null pointer.

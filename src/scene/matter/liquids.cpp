@@ -2,10 +2,8 @@
 #include "scene/matter/liquids.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <set>
 
 namespace embody::scene {
 
@@ -93,9 +91,10 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     part->start = bounds;
     if (const SharedFluid* shared = to_join({matter, bounds})) {
         part->fluid = shared->fluid;
-        const Result<physics::FluidIds> ids = add_particles(*part, places);
+        const Result<physics::FluidIds> ids = world_.add_to_fluid(part->fluid, places);
         if (!ids.ok()) return ids.error();
         part->ids = ids.value();
+        if (Result<void> set = world_.set_liquid(part->fluid, part->ids, part->matter); !set.ok()) return set.error();
     } else {
         FluidDefinition definition = matter;
         definition.points.assign(places.begin(), places.end());
@@ -131,63 +130,15 @@ Result<Liquids::Part*> Liquids::add_empty(const FluidDefinition& matter, const B
     return added;
 }
 
-Result<physics::FluidIds> Liquids::add_particles(const Part& part, std::span<const Vec3> places) {
-    const Result<physics::FluidIds> ids = world_.add_to_fluid(part.fluid, places);
-    if (!ids.ok()) return ids.error();
-    if (Result<void> set = world_.set_liquid(part.fluid, ids.value(), part.matter); !set.ok()) return set.error();
-    return ids.value();
-}
-
-Result<Liquids::Part*> Liquids::add_again(const FluidDefinition& matter, std::span<const Vec3> places) {
-    const Result<Part*> added = add(matter, places);
-    if (!added.ok() || particles_of(*added.value()).size() == places.size()) return added;
-    Part& part = *added.value();
-
-    // Particles that were not left out are in the order of their places.
-    constexpr double same_place = 1e-4;  // m
-    using Cell = std::array<std::int64_t, 3>;
-    const auto cell_of = [&](Vec3 place) {
-        Cell cell{};
-        for (int axis = 0; axis < 3; ++axis)
-            cell[static_cast<std::size_t>(axis)] = std::llround(place[axis] / matter.cell_size);
-        return cell;
-    };
-    const FluidParticles particles = world_.fluid_particles(part.fluid);
-    std::set<Cell> filled;
-    std::vector<bool> is_there(places.size(), false);
-    std::size_t at = 0;
-    for (const std::uint32_t i : particles_of(part)) {
-        const Vec3 position = particles.origin + to_vec3(particles.positions[i]);
-        while (at < places.size() && length(places[at] - position) > same_place) ++at;
-        if (at == places.size()) break;
-        is_there[at++] = true;
-        filled.insert(cell_of(position));
+Result<Liquids::Part*> Liquids::add_drops(const FluidDefinition& matter, std::span<const physics::FluidDrop> drops) {
+    Bounds bounds;
+    for (const physics::FluidDrop& drop : drops) bounds.add(drop.position);
+    const Result<Part*> added = add_empty(matter, bounds);
+    if (!added.ok()) return added;
+    if (const Result<void> set = set_drops(*added.value(), drops); !set.ok()) {
+        remove(added.value());
+        return set.error();
     }
-    const auto is_near = [&](Vec3 place) {
-        const auto [x, y, z] = cell_of(place);
-        for (int k = 0; k < 27; ++k)
-            if (filled.contains({x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1})) return true;
-        return false;
-    };
-    std::vector<Vec3> wanted;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        if (is_there[i] || is_near(places[i])) wanted.push_back(places[i]);
-
-    // They are made where there is room, and put to their places afterwards.
-    const std::size_t count = part.ids.last - part.ids.first;
-    const auto first = static_cast<std::size_t>(std::ranges::find(is_there, true) - is_there.begin());
-    if (wanted.size() <= count || first == is_there.size()) return added;
-    const std::size_t missing = wanted.size() - count;
-    const Result<physics::FluidIds> more = add_particles(part, std::vector<Vec3>(missing, places[first]));
-    if (!more.ok()) return added;
-    part.ids.last = more.value().last;
-    find(part.fluid)->version = 0;
-    const Result<void> put = world_.change_fluid(part.fluid, part.ids, [&](std::uint32_t id, Vec3& position, Vec3&) {
-        const std::size_t index = id - part.ids.first;
-        if (index < wanted.size()) position = wanted[index];
-        return index < wanted.size();
-    });
-    if (!put.ok()) return put.error();
     return added;
 }
 

@@ -41,9 +41,8 @@ public:
     Result<Part*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
     /// A part without particles, which are to come within these bounds (m, world).
     Result<Part*> add_empty(const physics::FluidDefinition& matter, const Bounds& bounds);
-    /// Adds particles that have run: of those in solids all that are about a cell from one that is not, since they
-    /// touch walls to rounding and a little beyond.
-    Result<Part*> add_again(const physics::FluidDefinition& matter, std::span<const Vec3> places);
+    /// Adds particles that have run exactly there, also where solids are by now: these push them out.
+    Result<Part*> add_drops(const physics::FluidDefinition& matter, std::span<const physics::FluidDrop> drops);
     /// Removes its particles from the world.
     void remove(Part* part);
     /// Indices of its particles in the world's fluid_particles(part.fluid), in the order of their ids. Valid until the
@@ -84,8 +83,6 @@ private:
     [[nodiscard]] Bounds bounds_of(SharedFluid& shared);
     [[nodiscard]] std::vector<SharedFluid>::iterator find(physics::FluidHandle fluid);
     void locate(SharedFluid& shared);
-    /// Particles of the part's matter in its fluid.
-    Result<physics::FluidIds> add_particles(const Part& part, std::span<const Vec3> places);
     [[nodiscard]] Bounds bounds_of(const Part& part);
     Result<void> hand_over(Part& part, physics::FluidHandle to);
     std::unique_ptr<Part> take(Part& part);

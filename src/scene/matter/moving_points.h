@@ -54,7 +54,7 @@ public:
     [[nodiscard]] virtual physics::SleepState state() const = 0;
     [[nodiscard]] virtual Vec3 center_of_mass() const = 0;
     [[nodiscard]] virtual double mass() const = 0;  ///< kg
-    /// Bounds of the drawn form.
+    /// Bounds of the drawn form; of a liquid without a drop those of where it is to come.
     [[nodiscard]] virtual Bounds bounds() const = 0;
     /// How far they can move down together until one touches another body, m; empty if none does within `max_distance`.
     [[nodiscard]] virtual std::optional<double> drop_distance(double max_distance) const = 0;
