@@ -187,6 +187,8 @@ public:
     [[nodiscard]] const FluidPort* fluid_port(FluidPortHandle handle) const;
     /// Particles that came out of it, or went into it, so far; 0 if stale.
     [[nodiscard]] std::uint64_t passed_particles(FluidPortHandle handle) const;
+    /// Whether a source gave less than its rate in the last step, as its fluid has as many particles as it allows.
+    [[nodiscard]] bool is_waiting(FluidPortHandle handle) const;
 
     /// Advances by settings().time_step.
     const StepReport& step();

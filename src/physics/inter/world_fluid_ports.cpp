@@ -52,4 +52,9 @@ std::uint64_t World::passed_particles(FluidPortHandle handle) const {
     return record != nullptr ? record->passed : 0;
 }
 
+bool World::is_waiting(FluidPortHandle handle) const {
+    const FluidPortRecord* record = state_->fluids.ports.find(handle);
+    return record != nullptr && record->waits;
+}
+
 }  // namespace embody::physics

@@ -112,6 +112,8 @@ public:
     /// Entities that are not simulated as their kind, and why: "Towel is simulated as rigid, because …".
     [[nodiscard]] std::vector<std::string> notes() const;
     [[nodiscard]] std::vector<PortFault> port_faults() const;
+    /// Taps that gave less than their flow in the last step: their liquid has as many drops as its budget allows.
+    [[nodiscard]] std::vector<EntityIndex> waiting_taps() const;
     /// Drops that came from the entity's tap, and that went into its drain, since the start.
     struct PassedDrops {
         std::uint64_t poured = 0, drained = 0;

@@ -182,6 +182,13 @@ Simulation::PassedDrops Simulation::passed_drops(EntityIndex entity) const {
                                         : PassedDrops{found->second.tap.passed, found->second.drain.passed};
 }
 
+std::vector<EntityIndex> Simulation::waiting_taps() const {
+    std::vector<EntityIndex> waiting;
+    for (const auto& [index, its] : state_->ports)
+        if (state_->world->is_waiting(its.tap.handle)) waiting.push_back(index);
+    return waiting;
+}
+
 std::vector<PortFault> Simulation::port_faults() const {
     std::vector<PortFault> faults;
     for (const auto& [index, its] : state_->ports)

@@ -2,6 +2,7 @@
 // Taps and drains in a session: placing, undo, copies, groups, and what is changed while it runs.
 #include <algorithm>
 
+#include "scene/live_scene.h"
 #include "scene/session/session_fixture.h"
 
 namespace embody::scene {
@@ -114,6 +115,43 @@ TEST_F(PortSession, WhileItRunsLiquidsGoAndComeAndTapsAreShut) {
     EXPECT_NE(error_of("entity.update", {{"index", water}, {"entity", {{"tap", {{"litres_per_minute", -1}}}}}})
                   .find("tap.litres_per_minute"),
               std::string::npos);
+}
+
+// A liquid without a drop is arranged, copied and put down as the shape that it is to fill.
+TEST_F(PortSession, AnEmptyLiquidIsPlacedAsItsShape) {
+    const EntityIndex tap = add_tap();
+    const EntityIndex water = entity("Water")->index;
+    const auto bounds = [&] {
+        const auto simulation = samples::make(session_->document());
+        return simulation ? simulation->bounds(water) : Bounds{};
+    };
+    const Bounds before = bounds();
+    EXPECT_NEAR(before.size().x, 0.5, 0.1);
+    EXPECT_NEAR(before.upper.y, 0.95, 0.05);
+    run("entity.align", {{"indices", {tap, water}}, {"axis", "x"}, {"at", "low"}});
+    const EntityIndex copy = run("entity.duplicate", {{"indices", {water}}})["indices"][0];
+    run("entity.drop_to_floor", {{"indices", {water, copy}}});
+    run("entity.move", {{"indices", {water}}, {"offset", {0, 1, 0}}});
+    EXPECT_NEAR(bounds().center().y, before.center().y + 1, 0.1);
+    for (const Entity& each : session_->document().entities) EXPECT_TRUE(is_finite(each.pose.position)) << each.name;
+    play(30);
+}
+
+TEST_F(PortSession, ATapThatWaitsIsNamedOnce) {
+    json tap = tap_json();
+    tap["name"] = "Kitchen tap";
+    tap["tap"]["litres_per_minute"] = 6000;
+    tap["tap"]["radius"] = 0.1;
+    run("entity.add", {{"entity", tap}});
+    add_tap();
+    run("entity.set_attribute", {{"indices", {entity("Water")->index}}, {"name", "particle_budget"}, {"value", 200}});
+    (void)session_->take_events();
+    play(240);
+    int told = 0;
+    for (const json& event : session_->take_events().messages)
+        if (event["event"] == "message" && event["text"].get<std::string>().starts_with("Kitchen tap: the tap waits"))
+            ++told;
+    EXPECT_EQ(told, 1);
 }
 
 }  // namespace

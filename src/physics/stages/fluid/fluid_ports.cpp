@@ -77,6 +77,7 @@ std::optional<std::uint32_t> next_kept_id(const FluidRecord& fluid, const FluidS
 }
 
 void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& source) {
+    record.waits = false;
     FluidRecord* fluid = world.fluids.records.find(source.fluid);
     const std::optional<PortFrame> frame = source.is_open ? frame_of(world, source.body) : std::nullopt;
     if (!frame || fluid == nullptr || fluid->is_frozen || source.rate == 0) return;
@@ -94,6 +95,7 @@ void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& 
         if (fluid->positions.size() + poured.size() >= source.max_particles || poured.size() >= ids_left) {
             // What waits does not come at once when there is room again.
             record.owed = std::fmod(record.owed, volume);
+            record.waits = true;
             world.report.limits |= static_cast<std::uint32_t>(StepLimit::fluid_source_waits);
             break;
         }
