@@ -116,11 +116,14 @@ TEST(FluidPort, ShutItPassesNothingAndWaitsWhereTheFluidIsFull) {
     tap.is_open = true;
     tap.max_particles = before + 20;
     ASSERT_TRUE(world->set_fluid_port(source, tap));
+    EXPECT_FALSE(world->is_waiting(source));
     std::uint32_t limits = 0;
     for (int i = 0; i < 60; ++i) limits |= world->step().limits;
     EXPECT_EQ(count_of(*world, water), before + 20);
     EXPECT_NE(limits & static_cast<std::uint32_t>(StepLimit::fluid_source_waits), 0u);
+    EXPECT_TRUE(world->is_waiting(source));
     ASSERT_TRUE(world->destroy_fluid_port(source));
+    EXPECT_FALSE(world->is_waiting(source));
     EXPECT_FALSE(world->destroy_fluid_port(source));
     EXPECT_EQ(world->fluid_port(source), nullptr);
 }
