@@ -22,37 +22,38 @@ struct MarkedCell {
     float surface;
 };
 
-/// Cells with less room than `min_room` are narrow; they count as neighbours if `are_narrow_told`.
-struct Neighbourhood {
-    const FluidGrid& grid;
-    float min_room;
-    bool are_narrow_told;
-};
-
-// Surface that the open neighbours imply for a cell that is not liquid by itself.
-void look_around(const Neighbourhood& around, int cell, std::vector<MarkedCell>& marked) {
-    const FluidGrid& grid = around.grid;
-    const float min_room = around.min_room;
-    if (grid.surface[cell] < 0) return;
-    const bool is_narrow = grid.room[cell] < min_room;
-    int liquid = 0, dry = 0;
-    float sum = 0;
+template <class Visit>
+void visit_open_neighbours(const FluidGrid& grid, int cell, Visit visit) {
     for (int axis = 0; axis < 3; ++axis) {
         const int stride = grid.stride(axis);
-        for (const int side : {-1, 1}) {
-            if (grid.open[axis][side < 0 ? cell : cell + stride] <= 0) continue;
-            const int other = cell + side * stride;
-            const bool counts = around.are_narrow_told || grid.room[other] >= min_room;
-            if (grid.surface[other] < 0 && counts) {
-                ++liquid;
-                sum += grid.surface[other];
-            } else if (grid.room[other] >= min_room) {
-                ++dry;
-            }
-        }
+        if (grid.open[axis][cell] > 0) visit(cell - stride);
+        if (grid.open[axis][cell + stride] > 0) visit(cell + stride);
     }
-    if (is_narrow && liquid > 0) marked.push_back({cell, sum / static_cast<float>(liquid)});
-    if (!is_narrow && liquid > 0 && dry == 0) marked.push_back({cell, -hole_depth});
+}
+
+// A hole has liquid in all neighbours with room.
+bool is_hole(const FluidGrid& grid, int cell, float min_room) {
+    int liquid = 0, dry = 0;
+    visit_open_neighbours(grid, cell, [&](int other) {
+        if (grid.room[other] < min_room) return;
+        ++(grid.surface[other] < 0 ? liquid : dry);
+    });
+    return liquid > 0 && dry == 0;
+}
+
+// The surface goes on into a narrow cell from neighbours with at least `min_room`, as far as they have more room than
+// the cell: along a wall it stays as high as beside the wall. False where there are none.
+bool go_on_into(const FluidGrid& grid, int cell, float min_room, std::vector<MarkedCell>& marked) {
+    float sum = 0, weight = 0;
+    visit_open_neighbours(grid, cell, [&](int other) {
+        const float more = grid.room[other] - grid.room[cell];
+        if (grid.room[other] < min_room || !(more > 0)) return;
+        sum += more * grid.surface[other];
+        weight += more;
+    });
+    if (!(weight > 0)) return false;
+    marked.push_back({cell, sum / weight});
+    return true;
 }
 
 void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
@@ -112,11 +113,12 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
         Found& own = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
-                const std::size_t before = own.marked.size();
-                look_around({grid, min_room, false}, cell, own.marked);
-                const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
-                if (is_dry && grid.room[cell] < min_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
-                if (is_dry && (grid.thin[cell] & between)) own.between.push_back(cell);
+                const bool is_narrow = grid.room[cell] < min_room;
+                if (!is_narrow && grid.surface[cell] >= 0 && is_hole(grid, cell, min_room))
+                    own.marked.push_back({cell, -hole_depth});
+                if (is_narrow && !go_on_into(grid, cell, min_room, own.marked) && grid.obstacle[cell] > -1)
+                    own.narrow.push_back(cell);
+                if (grid.thin[cell] & between) own.between.push_back(cell);
             });
         }
     });
@@ -124,7 +126,7 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
     for (int pass = 0; pass < settings.narrow_passes; ++pass) {
         std::vector<MarkedCell> marked;
         for (const Found& own : found) {
-            for (const int cell : own.narrow) look_around({grid, min_room, true}, cell, marked);
+            for (const int cell : own.narrow) go_on_into(grid, cell, 0, marked);
         }
         mark(grid, marked);
     }

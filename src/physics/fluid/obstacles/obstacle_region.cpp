@@ -93,8 +93,11 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
                     const bool is_thin = probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h);
                     for (int axis = 0; axis < 3; ++axis) {
                         const bool has_both = place[axis] > 0 && place[axis] + 1 < size_[axis];
+                        Vec3 step;
+                        step[axis] = h;
                         const bool is_between = has_both && own_distance_[cell - stride(axis)] > on_surface &&
-                                                own_distance_[cell + stride(axis)] > on_surface;
+                                                own_distance_[cell + stride(axis)] > on_surface &&
+                                                is_walled(probe, center - step, center + step);
                         if (!is_thin && !is_between) continue;
                         shut(axis, cell);
                         if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
