@@ -21,6 +21,10 @@ void admit_drops(FluidGrid& grid, TaskPool& workers);
 /// Velocity at a face; the components across are means of the four nearest faces, m/s.
 Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 
+/// Of faces between liquid cells, (dt/2) (u·∇)u: particles go straight for dt, so that their velocity is the one
+/// halfway along a curved path (docs/physics/fluids.md, "Paths").
+void find_convection(FluidGrid& grid, double dt, TaskPool& workers);
+
 /// To what degree the liquid at a face sticks to a wall: axis, cell.
 using Sticking = std::function<double(int, int)>;
 
@@ -29,7 +33,7 @@ using Sticking = std::function<double(int, int)>;
 /// at the surface is the obstacle's.
 void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking, TaskPool& workers);
 
-/// Volume that flows out of each liquid cell by faces and surfaces of obstacles, m³/s.
+/// Volume that flows out of each liquid cell by faces, less their convection, and by surfaces of obstacles, m³/s.
 void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
              std::vector<double>& flow, TaskPool& workers);
 
