@@ -216,6 +216,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
 
     system_.build(grid_, settings_, workers);
     find_convection(grid_, dt, workers);
+    find_surface_change(grid_, surface_change_, workers);
     accelerate(gravity * dt, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {liquids_, is_tense_, settings_.components});
     const double density = properties().density;
@@ -233,6 +234,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
+    add_to_faces(grid_, surface_change_);
     follow_obstacles(grid_, obstacles_, sticking(), workers);
     spread_out(workers);
 }

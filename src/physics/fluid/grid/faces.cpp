@@ -11,11 +11,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-struct FaceValue {
-    int axis, cell;
-    float value;
-};
-
 // Where a face's centre is.
 Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
     Vec3 center = grid.center(c);
@@ -133,6 +128,47 @@ void find_convection(FluidGrid& grid, double dt, TaskPool& workers) {
             });
         }
     });
+}
+
+void find_surface_change(const FluidGrid& grid, std::vector<FaceValue>& change, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    const auto look_at = [&](int axis, int cell, const Cell& c, std::vector<FaceValue>& list) {
+        const auto is_liquid = [&](int face) {
+            return grid.open[axis][face] > 0 && (grid.row[face] >= 0 || grid.row[face - grid.stride(axis)] >= 0);
+        };
+        if (!(grid.mass[axis][cell] > 1e-6f) || grid.open[axis][cell] <= 0 || is_liquid(cell)) return;
+        Vec3 offset;
+        int count = 0;
+        for (int along = 0; along < 3; ++along) {
+            const int upper = is_liquid(cell + grid.stride(along)), lower = is_liquid(cell - grid.stride(along));
+            offset[along] = lower - upper;
+            count += lower + upper;
+        }
+        if (count < 2) return;
+        const Vec3 center = face_center(grid, axis, c);
+        const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+        float gradient[3];
+        (void)sample_center(grid, grid.surface, at, gradient);
+        const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+        offset = (offset - normal * dot(offset, normal)) * (grid.cell_size() / count);
+        list.push_back({axis, cell, static_cast<float>(dot(gradient_at(grid, axis, cell), offset))});
+    };
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
+        auto& list = found[static_cast<std::size_t>(worker)];
+        for (std::size_t i = range.first; i < range.last; ++i) {
+            grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
+                if (grid.row[cell] >= 0) return;
+                for (int axis = 0; axis < 3; ++axis) look_at(axis, cell, c, list);
+            });
+        }
+    });
+    change.clear();
+    for (const auto& list : found) change.insert(change.end(), list.begin(), list.end());
+}
+
+void add_to_faces(FluidGrid& grid, std::span<const FaceValue> change) {
+    for (const FaceValue& face : change) grid.velocity[face.axis][face.cell] += face.value;
 }
 
 void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers) {

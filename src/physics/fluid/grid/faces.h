@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
@@ -25,6 +27,16 @@ Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 /// halfway along a curved path (docs/physics/fluids.md, "Paths").
 void find_convection(FluidGrid& grid, double dt, TaskPool& workers);
 
+/// A value at a face.
+struct FaceValue {
+    int axis, cell;
+    float value;
+};
+
+/// Of the air's faces beside the liquid's, by what the velocity changes along the surface from the middle of those to
+/// the face, m/s (docs/physics/fluids.md, "Surface").
+void find_surface_change(const FluidGrid& grid, std::vector<FaceValue>& change, TaskPool& workers);
+
 /// To what degree the liquid at a face sticks to a wall: axis, cell.
 using Sticking = std::function<double(int, int)>;
 
@@ -32,6 +44,8 @@ using Sticking = std::function<double(int, int)>;
 /// liquid sticks (1: its layer at the wall is thicker than a cell, 0: much thinner) they are set such that the velocity
 /// at the surface is the obstacle's.
 void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking, TaskPool& workers);
+
+void add_to_faces(FluidGrid& grid, std::span<const FaceValue> change);
 
 /// Volume that flows out of each liquid cell by faces, less their convection, and by surfaces of obstacles, m³/s.
 void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
