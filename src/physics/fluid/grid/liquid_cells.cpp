@@ -98,13 +98,46 @@ void fill_gaps(FluidGrid& grid, std::vector<int>& gaps) {
     } while (!layer.empty());
 }
 
+// Thin cells that no way through air leads out of are liquid (docs/physics/fluids.md, "Surface"). Those outside are
+// found from cells with no particle near.
+void fill_pockets(FluidGrid& grid, const std::vector<int>& thin, float min_room) {
+    constexpr float unknown = 2;  // cells; no surface: these are within ±1
+    for (const int cell : thin) grid.surface[cell] = unknown;
+    const auto visit_neighbours = [&](int cell, const auto& visit) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int stride = grid.stride(axis);
+            if (grid.open[axis][cell] > 0) visit(cell - stride);
+            if (grid.open[axis][cell + stride] > 0) visit(cell + stride);
+        }
+    };
+    std::vector<int> outside;
+    const auto reach = [&](int cell) {
+        if (grid.surface[cell] != unknown) return;
+        grid.surface[cell] = -height_of_surface(grid.density[cell] / grid.room[cell]);
+        outside.push_back(cell);
+    };
+    for (const int cell : thin) {
+        visit_neighbours(cell, [&](int other) {
+            if (grid.surface[other] >= 0 && grid.room[other] >= min_room && !(grid.density[other] > 0)) reach(cell);
+        });
+    }
+    while (!outside.empty()) {
+        const int cell = outside.back();
+        outside.pop_back();
+        visit_neighbours(cell, reach);
+    }
+    for (const int cell : thin) {
+        if (grid.surface[cell] == unknown) grid.surface[cell] = -hole_depth;
+    }
+}
+
 // Narrow cells are liquid beside liquid, those in corners beside such narrow cells; holes with liquid all around are
 // filled.
 void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
     struct Found {
         std::vector<MarkedCell> marked;
-        std::vector<int> narrow, between;
+        std::vector<int> narrow, between, thin;
     };
     const float min_room = settings.min_room;
     std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
@@ -116,6 +149,7 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
                 look_around({grid, min_room, false}, cell, own.marked);
                 const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
                 if (is_dry && grid.room[cell] < min_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
+                if (is_dry && grid.room[cell] >= min_room && grid.density[cell] > 0) own.thin.push_back(cell);
                 if (is_dry && (grid.thin[cell] & between)) own.between.push_back(cell);
             });
         }
@@ -128,6 +162,9 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
         }
         mark(grid, marked);
     }
+    std::vector<int> thin;
+    for (const Found& own : found) thin.insert(thin.end(), own.thin.begin(), own.thin.end());
+    fill_pockets(grid, thin, min_room);
     std::vector<int> gaps;
     for (const Found& own : found) gaps.insert(gaps.end(), own.between.begin(), own.between.end());
     fill_gaps(grid, gaps);
