@@ -99,13 +99,39 @@ void fill_gaps(FluidGrid& grid, std::vector<int>& gaps) {
     } while (!layer.empty());
 }
 
+// Thin cells that no way through air leads out of are liquid (docs/physics/fluids.md, "Surface"). Those outside are
+// found from cells with no particle near.
+void fill_pockets(FluidGrid& grid, const std::vector<int>& thin, float min_room) {
+    constexpr float unknown = 2;  // cells; no surface: these are within ±1
+    for (const int cell : thin) grid.surface[cell] = unknown;
+    std::vector<int> outside;
+    const auto reach = [&](int cell) {
+        if (grid.surface[cell] != unknown) return;
+        grid.surface[cell] = -height_of_surface(grid.density[cell] / grid.room[cell]);
+        outside.push_back(cell);
+    };
+    for (const int cell : thin) {
+        visit_open_neighbours(grid, cell, [&](int other) {
+            if (grid.surface[other] >= 0 && grid.room[other] >= min_room && !(grid.density[other] > 0)) reach(cell);
+        });
+    }
+    while (!outside.empty()) {
+        const int cell = outside.back();
+        outside.pop_back();
+        visit_open_neighbours(grid, cell, reach);
+    }
+    for (const int cell : thin) {
+        if (grid.surface[cell] == unknown) grid.surface[cell] = -hole_depth;
+    }
+}
+
 // Narrow cells are liquid beside liquid, those in corners beside such narrow cells; holes with liquid all around are
 // filled.
 void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
     struct Found {
         std::vector<MarkedCell> marked;
-        std::vector<int> narrow, between;
+        std::vector<int> narrow, between, thin;
     };
     const float min_room = settings.min_room;
     std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
@@ -113,21 +139,29 @@ void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, Task
         Found& own = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
-                const bool is_narrow = grid.room[cell] < min_room;
-                if (!is_narrow && grid.surface[cell] >= 0 && is_hole(grid, cell, min_room))
-                    own.marked.push_back({cell, -hole_depth});
-                if (is_narrow && !go_on_into(grid, cell, min_room, own.marked) && grid.obstacle[cell] > -1)
-                    own.narrow.push_back(cell);
+                if (grid.room[cell] < min_room) {
+                    if (grid.obstacle[cell] > -1) own.narrow.push_back(cell);
+                } else if (grid.surface[cell] >= 0) {
+                    if (is_hole(grid, cell, min_room))
+                        own.marked.push_back({cell, -hole_depth});
+                    else if (grid.density[cell] > 0)
+                        own.thin.push_back(cell);
+                }
                 if (grid.thin[cell] & between) own.between.push_back(cell);
             });
         }
     });
-    for (const Found& own : found) mark(grid, own.marked);
-    for (int pass = 0; pass < settings.narrow_passes; ++pass) {
+    std::vector<int> narrow, thin;
+    for (const Found& own : found) {
+        mark(grid, own.marked);
+        thin.insert(thin.end(), own.thin.begin(), own.thin.end());
+        narrow.insert(narrow.end(), own.narrow.begin(), own.narrow.end());
+    }
+    fill_pockets(grid, thin, min_room);
+    // From cells with room first, then from narrow ones that have theirs.
+    for (int pass = 0; pass <= settings.narrow_passes; ++pass) {
         std::vector<MarkedCell> marked;
-        for (const Found& own : found) {
-            for (const int cell : own.narrow) go_on_into(grid, cell, 0, marked);
-        }
+        std::erase_if(narrow, [&](int cell) { return go_on_into(grid, cell, pass == 0 ? min_room : 0, marked); });
         mark(grid, marked);
     }
     std::vector<int> gaps;
