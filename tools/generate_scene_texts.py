@@ -37,7 +37,7 @@ SIMPLE_SCHEMA = {
                                            "items": {"type": "number", "minimum": 0, "maximum": 1}}]},
 }
 # Types that the server always sends with all fields, and the Studio not at all or with all, too.
-ALL_SENT = ("SceneSettings", "Camera", "Light")
+ALL_SENT = ("SceneSettings", "Camera", "Light", "Tap", "Drain")
 DEFINITIONS = {"SceneSettings": "settings", "KeptForm": "kept_form", "JointLimit": "limit", "JointMotor": "motor"}
 
 # Fields that the reader accepts although no list has them: names of entities in joints, the friendly form of their

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
-ball, Newton's cradle, a trampoline. The others there were built by hand.
+ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -222,9 +222,40 @@ def breaking_plates() -> dict:
     return scene("Breaking plates", "Plates fall on tiles, and a ball flies through a pane. Make one stronger (Breaking impulse) and play again.", [0.8, 1.0, 2.3], [0.05, 0.35, 0], entities)
 
 
+def basin() -> dict:
+    """A basin, 70 × 40 cm inside, that a tap fills with 50 litres in 10 s, and that a drain empties afterwards."""
+    length, width, height, wall = 0.35, 0.2, 0.2, 0.025
+    stone = [0.86, 0.85, 0.82]
+    entities = [{**fixed("Floor", [2, 0.1, 2], [0, -0.1, 0], [0.55, 0.57, 0.6], friction_static=0.6, friction_dynamic=0.5), "finish": "tiles"}]
+    top = 0.5
+    entities.append(fixed("Stand", [0.3, (top - 2 * wall) / 2, 0.15], [0, (top - 2 * wall) / 2, 0], [0.5, 0.36, 0.22]))
+    entities.append(fixed("Bottom", [length + 2 * wall, wall, width + 2 * wall], [0, top - wall, 0], stone))
+    for side in (-1, 1):
+        entities.append(fixed("Side", [wall, height, width + 2 * wall], [side * (length + wall), top + height, 0], stone))
+        entities.append(fixed("Side", [length, height, wall], [0, top + height, side * (width + wall)], stone))
+    # A column on the rim behind, whose spout reaches over the water.
+    steel = {"kind": "static"}
+    spout = [{"type": "cylinder", "radius": 0.022, "half_height": 0.11}, {"type": "box", "half_extents": [0.014, 0.014, 0.085], "position": [0, 0.098, 0.085]},
+             {"type": "cylinder", "radius": 0.028, "half_height": 0.015, "position": [0, 0.08, 0.17]}, {"type": "box", "half_extents": [0.008, 0.005, 0.04], "position": [0, 0.118, -0.015]}]
+    entities.append({"name": "Tap", "shape": {"type": "compound", "children": spout}, "pose": {"position": [-0.2, top + 2 * height + 0.11, -width - wall]}, "color": [0.6, 0.62, 0.65],
+                     "locked": True, "attributes": steel, "tap": {"litres_per_minute": 300, "radius": 0.025, "position": [0, 0.045, 0.17]}})
+    entities.append({"name": "Drain", "shape": {"type": "cylinder", "radius": 0.045, "half_height": 0.003}, "pose": {"position": [0.2, top + 0.003, 0]}, "color": [0.1, 0.1, 0.11],
+                     "locked": True, "attributes": steel, "drain": {"radius": 0.06, "open": False}})
+    entities.append(box("Water", [length, 0.125, width], [0, top + 0.125, 0], [0.6, 0.8, 0.9], starts_empty=True, attributes={"kind": "fluid", "particle_budget": 8000}))
+    for number, (x, z, radius) in enumerate([(0.05, 0.08, 0.05), (0.18, -0.08, 0.06), (-0.1, 0.1, 0.045)]):
+        entities.append(sphere(f"Ball {number + 1}", radius, [x, top + radius + 0.001, z], hue(number / 3), attributes={"density": 150, "restitution": 0.3}))
+    entities.append(box("Block", [0.05, 0.04, 0.06], [-0.22, top + 0.041, 0.08], [0.72, 0.52, 0.3], attributes={"density": 550}))
+    tap, drain = (next(number + 1 for number, each in enumerate(entities) if each["name"] == name) for name in ("Tap", "Drain"))
+    timed = [("shut the tap", 10, tap, False), ("pull the plug", 14, drain, True)]
+    actions = [{"name": name, "trigger": {"type": "time", "time": time}, "receiver": {"index": receiver}, "effect": {"type": "set_open", "open": is_open}} for name, time, receiver, is_open in timed]
+    actions += [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": receiver}, "effect": {"type": "set_open", "open": is_open}, "once": False}
+                for name, receiver, is_open in (("Tap on", tap, True), ("Tap off", tap, False), ("Plug out", drain, True), ("Plug in", drain, False))]
+    return scene("Tap and drain", "A tap fills a basin, and toys rise with the water. After 14 s a drain empties it. Four buttons open and shut both.", [0.75, 1.95, 1.0], [0, 0.72, 0], entities, actions=actions)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -16,7 +16,7 @@ namespace {
 struct Checked {
     std::size_t entities = 0;
     std::vector<std::string> notes;  ///< differences between what is simulated and what the entity's kind asks for
-    /// Between attributes that a person set, or a kept form and its entity; the scene can be played.
+    /// Between attributes that a person set, a kept form and its entity, or taps and liquids; the scene can be played.
     std::vector<Error> contradictions;
 };
 
@@ -48,6 +48,12 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
         const Result<void> kept = definitions.points.check_kept(document->entities[i], *acting);
         if (!kept)
             checked.contradictions.push_back({entity + kept.error().where, kept.error().why, kept.error().remedy});
+    }
+    for (const scene::PortFault& fault : (*simulation)->port_faults()) {
+        const auto at = std::ranges::find(document->entities, fault.entity, &scene::Entity::index);
+        const std::string entity =
+            file.string() + ": entities[" + std::to_string(at - document->entities.begin()) + "].";
+        checked.contradictions.push_back({entity + fault.error.where, fault.error.why, fault.error.remedy});
     }
     return checked;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -50,7 +51,8 @@ struct Summary {
     bool paused = false;
     std::size_t actions = 0;
     EnergySummary energy;
-    std::vector<std::string> notes;   ///< at the start: what is not simulated as its entity's kind says
+    std::vector<std::string> notes;  ///< at the start: what is not simulated as its entity's kind says
+    std::set<scene::EntityIndex> waiting_taps;
     std::uint64_t zones_missing = 0;  ///< zones that are missing in the trace
 };
 
@@ -188,8 +190,12 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         print_line("note: a liquid's motion left the finite numbers; it was frozen where it was");
     if (reached(StepLimit::fluid_particles_lost))
         print_line("note: liquid flowed so far away that it was removed; a floor or walls keep it");
-    if (reached(StepLimit::fluid_source_waits))
-        print_line("note: a source waited, as its liquid has as many drops as it allows");
+    for (const scene::EntityIndex index : summary.waiting_taps) {
+        const scene::Entity* tap = simulation.definition(index);
+        const std::string name = tap != nullptr ? tap->name : std::string();
+        print_text("note: tap {} waited, as its liquid has as many drops as its particle_budget allows\n",
+                   name.empty() ? "of entity " + std::to_string(index) : "\"" + name + "\"");
+    }
     if (reached(StepLimit::impact_iterations_exhausted))
         print_line("note: an impact needed more iterations than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))
@@ -224,6 +230,8 @@ int run_simulate(const SimulateArguments& arguments) {
         ++summary.steps;
         summary.slowest_ms = std::max(summary.slowest_ms, step.milliseconds);
         summary.limits |= step.limits;
+        const std::vector<scene::EntityIndex> waiting = (*simulation)->waiting_taps();
+        summary.waiting_taps.insert(waiting.begin(), waiting.end());
         summary.simulated = step.time;
         summary.energy.add(step);
         summary.actions += (*simulation)->fired().size();

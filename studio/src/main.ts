@@ -33,6 +33,7 @@ import { openPalette } from "./panels/palette";
 import { PeopleBar } from "./panels/people_bar";
 import { PeopleCards } from "./panels/people_cards";
 import { PinFields } from "./panels/pin_fields";
+import { PortFields } from "./panels/port_fields";
 import { offerRecoveries } from "./panels/recovery";
 import { newScene, openRecovery, openScenes, openVersions, saveAs, saveScene, saveVersion } from "./panels/scene_dialogs";
 import { SceneFields } from "./panels/scene_fields";
@@ -127,6 +128,7 @@ function start(): void {
     new SelectionOverlays(studio).root,
     entityFields.root,
     new LookFields(studio).root,
+    new PortFields(studio).root,
     new PinFields(studio).root,
     attributes.root,
     new JointFields(studio, joints).root,

@@ -46,6 +46,8 @@ export interface TestHook {
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
   /** Number of the selection's nodes that are marked as pinned. */
   pinned(): number;
+  /** Lines that mark the selection's taps, drains and liquids without a drop: their number, and the box around them. */
+  portMarks(): { lines: number; lower: number[]; upper: number[] };
   /** Number of convex parts that are drawn over the selection. */
   collisionParts(): number;
   /** Lines and points of each meaning (docs/protocol.md, "Debug frames") that are drawn. */
@@ -155,6 +157,10 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
     },
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     pinned: () => studio.view.pins.count,
+    portMarks: () => {
+      const { count, bounds } = studio.view.ports;
+      return { lines: count, lower: bounds.min.toArray(), upper: bounds.max.toArray() };
+    },
     collisionParts: () => studio.view.collision.parts,
     debugCounts: () => studio.view.debug.counts,
     joints: () => joints.count,

@@ -21,7 +21,8 @@ class Run:
 
     def __init__(self, scene: dict, lines: list):
         self.names = {entity["index"]: entity.get("name", str(entity["index"])) for entity in scene["entities"]}
-        self.first, self.last = ({e["index"]: e for e in line["entities"]} for line in (lines[0], lines[-1]))
+        self.seconds = [{e["index"]: e for e in line["entities"]} for line in lines]
+        self.first, self.last = self.seconds[0], self.seconds[-1]
 
     def called(self, name: str) -> list:
         return [index for index, own in self.names.items() if own.startswith(name)]
@@ -186,6 +187,19 @@ def breaking_plates(run: Run):
     yield from within("plates and panes that are whole", len(whole), 0, 0)
 
 
+def basin(run: Run):
+    (water,) = run.called("Water")
+    half, full = run.seconds[5], run.seconds[13]
+    # An even flow for 10 s, which a drain takes from 14 s on; what has splashed over the rim is there, too.
+    yield from within("drops at the start", len(run.points(water, run.first)), 0, 0)
+    yield from within("drops of 10 s over those of 5 s", len(run.points(water, full)) / len(run.points(water, half)), 1.999, 2.001)
+    for ball in run.called("Ball"):
+        began = run.first[ball]["position"][1]
+        yield from within(f"rise of {run.names[ball]}", full[ball]["position"][1] - began, 0.08, 0.3)
+        yield from within(f"height of {run.names[ball]} at the end", run.last[ball]["position"][1] - began, -0.02, 0.03)
+    yield from within("share of the water that is left", len(run.points(water)) / len(run.points(water, full)), 0, 0.15)
+
+
 def trampoline(run: Run):
     for index in run.called("Ball"):
         yield from within(f"height of {run.names[index]}", run.last[index]["position"][1], 0.3, 4.5)
@@ -205,6 +219,7 @@ def wrecking_ball(run: Run):
 
 # Seconds to simulate, whether all is asleep afterwards, and the law.
 SCENES = {
+    "basin": (30, False, basin),
     "bathtub": (3, False, bathtub),
     "breaking_plates": (4, False, breaking_plates),
     "card_house": (8, True, card_house),

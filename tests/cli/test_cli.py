@@ -273,6 +273,33 @@ class Database(unittest.TestCase):
         self.assertEqual(checked.returncode, 1)
         self.assertIn("entities[0].attributes.surface_material", checked.stdout)
 
+    def test_taps_and_drains_that_lead_nowhere_are_named(self):
+        scene = self.path / "scene.json"
+
+        def check(entity):
+            water = {"index": 2, "shape": {"type": "box", "half_extents": [0.2, 0.2, 0.2]}, "attributes": {"kind": "fluid"}, "starts_empty": True}
+            tap = {"index": 1, "name": "Tap", "shape": {"type": "sphere", "radius": 0.02}, "pose": {"position": [0, 1, 0]}, "attributes": {"kind": "static"}}
+            scene.write_text(json.dumps({"embody_scene": 1, "entities": [{**tap, **entity}, water]}))
+            checked = run("check", "--database", self.database, str(scene))
+            return checked.returncode, checked.stdout + checked.stderr
+
+        flow = {"litres_per_minute": 10, "position": [0, -0.05, 0]}
+        self.assertEqual(check({"tap": flow})[0], 0)
+        wrong = [
+            ({"tap": {**flow, "liquid": 1}}, "tap.liquid", "set it to a liquid"),
+            ({"tap": {**flow, "liquid": 9}}, "tap.liquid", "set it to a liquid"),
+            ({"tap": {**flow, "litres_per_minute": -1}}, "tap.litres_per_minute", "600000"),
+            ({"tap": {**flow, "radius": 0}}, "tap.speed", "set the radius"),
+            ({"tap": {**flow, "litres_per_minute": 600000}}, "tap.radius", "enlarge it"),
+            ({"drain": {"radius": 11}}, "drain.radius", "10"),
+            ({"drain": {"radius": 0.1}, "attributes": {"kind": "soft"}}, "drain", "rigid or static"),
+        ]
+        for entity, field, remedy in wrong:
+            code, told = check(entity)
+            self.assertEqual(code, 1, entity)
+            for words in (scene.name, field, remedy):
+                self.assertIn(words, told, entity)
+
     def test_import_search_show_set_reset(self):
         broken = self.path / "models" / "broken.glb"
         broken.write_bytes(b"glTF but not really")

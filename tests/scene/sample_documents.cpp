@@ -84,6 +84,9 @@ void fill_entities(Document& document) {
     sphere.angular_velocity = {0.1, 0, 0};
     sphere.force = {0, 0, 0.25};
     sphere.torque = {0, 1e-300, 0};
+    sphere.tap = {.litres_per_minute = 60, .radius = 0.02, .speed = 3, .position = {0, -0.5, 0}, .liquid = 3};
+    sphere.drain = {.radius = 0.05, .position = {0, 0.1, 0}, .open = false};
+    sphere.starts_empty = true;
     Entity& box = *document.find(3);
     box.enabled = false;
     box.start_asleep = true;
@@ -130,6 +133,7 @@ void add_actions(Document& document) {
                               Spawn{{{0, 5, 0}, {}}, {0, -1, 0}},
                               Remove{},
                               SetEnabled{false},
+                              SetOpen{false},
                               Pause{}};
     std::uint32_t id = 1;
     for (const Trigger& trigger : triggers)

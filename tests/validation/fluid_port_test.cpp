@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sources and drains: what came in less what went out is there, by particles; the rate is the one that was asked for.
+#include <algorithm>
 #include <limits>
 
 #include "foundation/random.h"
@@ -115,13 +116,106 @@ TEST(FluidPort, ShutItPassesNothingAndWaitsWhereTheFluidIsFull) {
     tap.is_open = true;
     tap.max_particles = before + 20;
     ASSERT_TRUE(world->set_fluid_port(source, tap));
+    EXPECT_FALSE(world->is_waiting(source));
     std::uint32_t limits = 0;
     for (int i = 0; i < 60; ++i) limits |= world->step().limits;
     EXPECT_EQ(count_of(*world, water), before + 20);
     EXPECT_NE(limits & static_cast<std::uint32_t>(StepLimit::fluid_source_waits), 0u);
+    EXPECT_TRUE(world->is_waiting(source));
     ASSERT_TRUE(world->destroy_fluid_port(source));
+    EXPECT_FALSE(world->is_waiting(source));
     EXPECT_FALSE(world->destroy_fluid_port(source));
     EXPECT_EQ(world->fluid_port(source), nullptr);
+}
+
+// A fluid without a drop has its places and its volume of a particle; what comes is of the source's matter.
+TEST_P(FluidPorts, FillAFluidThatStartsEmptyWithTheirOwnMatter) {
+    Random random(GetParam() + 201);
+    auto world = make_world({});
+    add_tank(*world, tank);
+    const Vec3 far{random.between(-200, 200), 0, random.between(-200, 200)};
+    const FluidDefinition nothing{.boxes = {{far + tank.lower, far + Vec3{tank.upper.x, 0.2, tank.upper.z}}},
+                                  .density = 900,
+                                  .cell_size = 0.05,
+                                  .starts_empty = true};
+    const FluidHandle fluid = world->create_fluid(nothing).value();
+    EXPECT_EQ(count_of(*world, fluid), 0u);
+    run(*world, 0.1);
+    const FluidIds ids = world->make_room(fluid, {}, 300).value();
+    EXPECT_EQ(ids.last - ids.first, 300u);
+    const LiquidMatter honey{.density = 1400, .viscosity = 5};
+    const FluidPortHandle tap = world
+                                    ->create_fluid_port(FluidSource{.fluid = fluid,
+                                                                    .position = far + Vec3{0, 0.3, 0},
+                                                                    .radius = 0.03,
+                                                                    .rate = random.between(1e-3, 3e-3),
+                                                                    .matter = honey,
+                                                                    .ids = ids})
+                                    .value();
+    std::uint32_t limits = 0;
+    for (int i = 0; i < 180; ++i) {
+        limits |= world->step().limits;
+        ASSERT_EQ(count_of(*world, fluid), world->passed_particles(tap));
+    }
+    const FluidParticles particles = world->fluid_particles(fluid);
+    for (const std::uint32_t id : particles.ids) EXPECT_TRUE(ids.contains(id));
+    EXPECT_EQ(world->fluid(fluid)->density, honey.density);
+    EXPECT_LT(length(particles.origin - far), 2);
+    // The ids that were kept are used up.
+    EXPECT_EQ(particles.ids.size() == 300, (limits & static_cast<std::uint32_t>(StepLimit::fluid_source_waits)) != 0);
+}
+
+// Several sources share the ids that are kept for them, and no particle has another's.
+TEST_P(FluidPorts, ShareKeptIdsAndLeaveTheOthersTheirs) {
+    Random random(GetParam() + 301);
+    auto world = make_world({});
+    const FluidHandle water = fill(*world, 0.1, 0.05);
+    const auto before = static_cast<std::uint32_t>(count_of(*world, water));
+    const FluidIds half = world->make_room(water, {before / 2, before}, 5000).value();
+    EXPECT_EQ(half.last - half.first, before - before / 2 + 5000);
+    const FluidIds room{half.last - 5000, half.last};
+    std::vector<FluidPortHandle> taps;
+    for (int i = 0; i < 3; ++i)
+        taps.push_back(world
+                           ->create_fluid_port(FluidSource{.fluid = water,
+                                                           .position = {0.1 * i - 0.1, 0.3, 0},
+                                                           .radius = 0.02,
+                                                           .rate = random.between(5e-4, 2e-3),
+                                                           .ids = room})
+                           .value());
+    run(*world, 1);
+    std::uint64_t poured = 0;
+    for (const FluidPortHandle tap : taps) poured += world->passed_particles(tap);
+    const FluidParticles particles = world->fluid_particles(water);
+    std::vector<std::uint32_t> ids(particles.ids.begin(), particles.ids.end());
+    std::ranges::sort(ids);
+    EXPECT_EQ(std::ranges::adjacent_find(ids), ids.end());
+    EXPECT_EQ(ids.size(), before + poured);
+    const auto in_half = std::ranges::count_if(ids, [&](std::uint32_t id) { return half.contains(id); });
+    EXPECT_EQ(static_cast<std::uint64_t>(in_half), before - before / 2 + poured);
+}
+
+TEST(FluidPort, DropsAreAddedExactlyAndNonsenseIsRefused) {
+    auto world = make_world({});
+    const FluidHandle water = fill(*world, 0.1, 0.05);
+    const std::size_t before = count_of(*world, water);
+    // In the floor of the tank, where add_to_fluid leaves them out.
+    const std::vector<FluidDrop> drops{{{0, -0.01, 0}, {1, 0, 0}}, {{0, 0.2, 0}, {}}};
+    const FluidIds ids = world->add_drops(water, drops).value();
+    EXPECT_EQ(ids.last - ids.first, 2u);
+    EXPECT_EQ(count_of(*world, water), before + 2);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto refused = world->add_drops(water, std::vector<FluidDrop>{{{0, nan, 0}, {}}});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().where, "drops[0].position.y");
+    EXPECT_FALSE(world->make_room(water, {}, ~std::uint32_t{0}));
+    EXPECT_FALSE(world->make_room({}, {}, 1));
+    const auto unkept = world->create_fluid_port(FluidSource{.fluid = water, .ids = {0, ~std::uint32_t{0}}});
+    ASSERT_FALSE(unkept);
+    EXPECT_EQ(unkept.error().where, "ids");
+    const auto mercury = world->create_fluid_port(FluidSource{.fluid = water, .matter = LiquidMatter{.density = nan}});
+    ASSERT_FALSE(mercury);
+    EXPECT_EQ(mercury.error().where, "matter.density");
 }
 
 TEST(FluidPort, WakesWaterThatSleeps) {

@@ -27,8 +27,10 @@ struct FluidDefinition {
     double cell_size = 0.02;     ///< edge of the cells it is solved on, m, 0.001 … 1; a full cell has eight particles
     double gravity_factor = 1;   ///< -10 … 10
     bool allow_sleep = true;     ///< may sleep while nothing moves in it
+    bool starts_empty = false;   ///< nothing of its volume is there yet: the volume tells where sources will pour
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
+
 /// What one of the liquids of a fluid is made of; limits as in FluidDefinition.
 struct LiquidMatter {
     double density = 998;        ///< kg/m³
@@ -65,6 +67,11 @@ struct FluidIds {
     std::uint32_t first = 0, last = 0;
 
     [[nodiscard]] bool contains(std::uint32_t id) const { return id >= first && id < last; }
+};
+
+/// A particle to be: m, world, and m/s.
+struct FluidDrop {
+    Vec3 position, velocity;
 };
 
 /// Particles of a fluid.

@@ -19,6 +19,11 @@ Result<void> validate(const FluidSource& source) {
     if (normalized(source.direction) == Vec3{}) return Error{"direction", "is zero", "say where the liquid flows to"};
     if (source.radius == 0 && source.speed == 0)
         return Error{"speed", "follows from no radius", "set the radius of the opening, or the speed"};
+    if (source.ids.first > source.ids.last) return Error{"ids", "end before they begin"};
+    if (source.matter) {
+        if (Result<void> valid = physics::validate(*source.matter); !valid)
+            return Error{"matter." + valid.error().where, valid.error().why, valid.error().remedy};
+    }
     if (source.max_particles > max_fluid_particles)
         return Error{"max_particles", "is more than a fluid has", "at most " + std::to_string(max_fluid_particles)};
     if (auto numbers = first_error(check_vector("position", source.position, largest_coordinate, "m"),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "foundation/result.h"
@@ -22,6 +23,10 @@ struct FluidSource {
     double rate = 1e-4;        ///< m³/s, 0 … 10
     double speed = 0;          ///< m/s, 0 … 100; 0: that at which the flow fills the disc
     bool is_open = true;
+    std::optional<LiquidMatter> matter;  ///< of the particles; without, that of the ids behind the fluid's
+    /// The particles have the next of these ids, which World::make_room has kept free; it waits when they are used up.
+    /// None: those that follow all others of the fluid.
+    FluidIds ids;
     /// It waits while the fluid has as many particles.
     std::size_t max_particles = max_fluid_particles;
 };

@@ -62,15 +62,18 @@ std::vector<FluidParticle> FluidSolver::take_particles(FluidIds ids) {
     return taken;
 }
 
-FluidIds FluidSolver::add_particles(std::vector<FluidParticle> particles, Vec3 origin) {
-    const std::uint32_t first = next_id_;
+FluidIds FluidSolver::add_particles(std::vector<FluidParticle> particles, Vec3 origin,
+                                    std::optional<std::uint32_t> first) {
+    std::uint32_t id = first.value_or(next_id_);
+    const std::uint32_t begin = id;
     for (FluidParticle& particle : particles) {
         for (int axis = 0; axis < 3; ++axis)
             particle.position[axis] = static_cast<float>(particle.position[axis] + (origin - origin_)[axis]);
-        particle.id = next_id_++;
+        particle.id = id++;
     }
     particles_.insert(particles_.end(), particles.begin(), particles.end());
-    return {first, next_id_};
+    next_id_ = std::max(next_id_, id);
+    return {begin, id};
 }
 
 void FluidSolver::set_matter(FluidIds ids, const FluidProperties& matter) {

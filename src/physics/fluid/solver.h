@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -78,8 +79,15 @@ public:
     std::size_t take_within(Vec3 center, double radius);
     /// Removes the particles with these ids; returns them in the order of the ids.
     std::vector<FluidParticle> take_particles(FluidIds ids);
-    /// Adds particles as they are, from a frame of world axes at `origin`; their ids follow all earlier ones.
-    FluidIds add_particles(std::vector<FluidParticle> particles, Vec3 origin);
+    /// Adds particles as they are, from a frame of world axes at `origin`; their ids follow all earlier ones, or begin
+    /// with `first`, which was kept.
+    FluidIds add_particles(std::vector<FluidParticle> particles, Vec3 origin, std::optional<std::uint32_t> first = {});
+    [[nodiscard]] std::uint32_t next_id() const { return next_id_; }
+    /// Keeps so many ids free, which follow all earlier ones.
+    FluidIds keep_ids(std::uint32_t count) {
+        next_id_ += count;
+        return {next_id_ - count, next_id_};
+    }
     /// Changes the particles with these ids by `change`, in world coordinates.
     void change_particles(FluidIds ids, const FluidChange& change);
     /// Stops all motion.

@@ -157,6 +157,11 @@ public:
     /// Adds particles of its particle_volume at these places (m), except those inside solids, at rest.
     /// Their ids are consecutive; an error where there is room for none. They are of the definition's matter.
     Result<FluidIds> add_to_fluid(FluidHandle fluid, std::span<const Vec3> places);
+    /// Adds particles exactly there, also where solids are.
+    Result<FluidIds> add_drops(FluidHandle fluid, std::span<const FluidDrop> drops);
+    /// Gives the particles with these ids new ones, in their order and without gaps, and keeps so many more behind them
+    /// free for sources. Returns all of these. They keep their liquids.
+    Result<FluidIds> make_room(FluidHandle fluid, FluidIds ids, std::uint32_t room);
     /// The particles with these ids are of this liquid from now on. Where the liquids of a fluid are several, its
     /// definition tells the matter of the first. Wakes the fluid.
     Result<void> set_liquid(FluidHandle fluid, FluidIds ids, const LiquidMatter& matter);
@@ -182,6 +187,8 @@ public:
     [[nodiscard]] const FluidPort* fluid_port(FluidPortHandle handle) const;
     /// Particles that came out of it, or went into it, so far; 0 if stale.
     [[nodiscard]] std::uint64_t passed_particles(FluidPortHandle handle) const;
+    /// Whether a source gave less than its rate in the last step, as its fluid has as many particles as it allows.
+    [[nodiscard]] bool is_waiting(FluidPortHandle handle) const;
 
     /// Advances by settings().time_step.
     const StepReport& step();

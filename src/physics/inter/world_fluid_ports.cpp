@@ -12,8 +12,10 @@ namespace {
 Result<void> check(const WorldState& world, const FluidPort& port) {
     if (Result<void> valid = validate(port); !valid) return valid;
     const auto* source = std::get_if<FluidSource>(&port);
-    if (source != nullptr && !world.fluids.records.contains(source->fluid))
-        return Error{"fluid", "is not one of this world"};
+    const FluidRecord* fluid = source != nullptr ? world.fluids.records.find(source->fluid) : nullptr;
+    if (source != nullptr && fluid == nullptr) return Error{"fluid", "is not one of this world"};
+    if (source != nullptr && source->ids.last > fluid->solver->next_id())
+        return Error{"ids", "are not kept free", "have them from World::make_room"};
     const BodyHandle body = std::visit([](const auto& of_kind) { return of_kind.body; }, port);
     if (!body.is_null() && !world.rigid.bodies.contains(body)) return Error{"body", "is not one of this world"};
     return {};
@@ -48,6 +50,11 @@ const FluidPort* World::fluid_port(FluidPortHandle handle) const {
 std::uint64_t World::passed_particles(FluidPortHandle handle) const {
     const FluidPortRecord* record = state_->fluids.ports.find(handle);
     return record != nullptr ? record->passed : 0;
+}
+
+bool World::is_waiting(FluidPortHandle handle) const {
+    const FluidPortRecord* record = state_->fluids.ports.find(handle);
+    return record != nullptr && record->waits;
 }
 
 }  // namespace embody::physics

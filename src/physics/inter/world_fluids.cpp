@@ -2,7 +2,10 @@
 #include "physics/inter/world.h"
 
 #include <cmath>
+#include <limits>
+#include <string>
 
+#include "physics/definitions/field_check.h"
 #include "physics/stages/fluid/fluids.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/state/world_state.h"
@@ -83,6 +86,39 @@ Result<FluidIds> World::add_to_fluid(FluidHandle fluid, std::span<const Vec3> pl
     if (!ids) return ids.error();
     if (Result<void> awake = wake(fluid); !awake) return awake.error();
     return *ids;
+}
+
+Result<FluidIds> World::add_drops(FluidHandle fluid, std::span<const FluidDrop> drops) {
+    FluidRecord* record = state_->fluids.records.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    if (record->is_frozen) return Error{"fluid", "is frozen", "destroy it and create another one"};
+    for (std::size_t i = 0; i < drops.size(); ++i) {
+        const std::string where = "drops[" + std::to_string(i) + "].";
+        if (auto valid = first_error(check_vector(where + "position", drops[i].position, largest_coordinate, "m"),
+                                     check_vector(where + "velocity", drops[i].velocity, largest_coordinate, "m/s"));
+            !valid)
+            return valid.error();
+    }
+    if (Result<void> room = check_room(*record, drops.size()); !room) return room.error();
+    const FluidIds ids = stages::add_drops(*record, drops, *state_->workers);
+    if (Result<void> awake = wake(fluid); !awake) return awake.error();
+    return ids;
+}
+
+Result<FluidIds> World::make_room(FluidHandle fluid, FluidIds ids, std::uint32_t room) {
+    FluidRecord* record = state_->fluids.records.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    if (record->is_frozen) return Error{"fluid", "is frozen", "destroy it and create another one"};
+    // The particles that are renumbered need ids, too.
+    constexpr std::uint32_t max_room = std::numeric_limits<std::uint32_t>::max() - max_fluid_particles;
+    const FluidSolver& solver = *record->solver;
+    if (room > max_room || solver.next_id() > max_room - room)
+        return Error{"ids", "of this fluid are used up", "destroy it and create another one"};
+    const FluidIds moved = move_particles(*record, ids, *record);
+    const FluidIds kept = record->solver->keep_ids(room);
+    read_particles(*record, *state_->workers);
+    if (Result<void> awake = wake(fluid); !awake) return awake.error();
+    return FluidIds{moved.last > moved.first ? moved.first : kept.first, kept.last};
 }
 
 Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change) {

@@ -43,6 +43,8 @@ struct FluidRecord {
     bool is_asleep = false, is_frozen = false;
     std::uint64_t version = 0;  ///< counts changes of what users read
     std::uint64_t lost = 0;     ///< particles that flew out of reach
+    /// Next id that sources use of those that were kept free for them, by the first of these.
+    std::map<std::uint32_t, std::uint32_t> next_kept_ids;
 };
 
 /// A dynamic body in a fluid: forces that the next step expects of its contacts and joints (docs/physics/fluids.md).

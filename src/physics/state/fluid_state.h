@@ -17,6 +17,7 @@ struct FluidPortRecord {
     double owed = 0;           ///< m³ that a source has not yet made particles of
     std::uint64_t index = 0;   ///< of a source's next particle, for its place in the disc
     std::uint64_t passed = 0;  ///< particles
+    bool waits = false;        ///< since the last step: its fluid has as many particles as the source allows
 };
 
 /// The liquids and grains.

@@ -141,12 +141,23 @@ inline constexpr auto fields_of<SetEnabled> = std::tuple{
     always_saved("enabled", &SetEnabled::enabled, "whether the receiver moves and collides"),
 };
 
+/// Of the receiver's tap and drain.
+struct SetOpen {
+    bool open = true;
+};
+template <>
+inline constexpr auto fields_of<SetOpen> = std::tuple{
+    always_saved("open", &SetOpen::open, "whether the receiver's tap and drain are open"),
+};
+
 struct Pause {};
 
-using Effect = std::variant<SetAttribute, ApplyImpulse, ApplyForce, SetVelocity, Spawn, Remove, SetEnabled, Pause>;
+using Effect =
+    std::variant<SetAttribute, ApplyImpulse, ApplyForce, SetVelocity, Spawn, Remove, SetEnabled, SetOpen, Pause>;
 template <>
-inline constexpr std::array<const char*, 8> alternatives_of<Effect> = {
-    "set_attribute", "apply_impulse", "apply_force", "set_velocity", "spawn", "remove", "set_enabled", "pause"};
+inline constexpr std::array<const char*, 9> alternatives_of<Effect> = {"set_attribute", "apply_impulse", "apply_force",
+                                                                       "set_velocity",  "spawn",         "remove",
+                                                                       "set_enabled",   "set_open",      "pause"};
 
 /// The paper's Action = {act_name, act_sender, act_receiver, act_id, act_param} (definition 6); the parameters are the
 /// trigger and the effect.

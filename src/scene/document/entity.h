@@ -74,6 +74,51 @@ inline constexpr auto fields_of<Light> = std::tuple{
 };
 static_assert(lists_all_members<Light>(), "a member of Light is in no list, or one is there twice");
 
+/// A source of liquid on an entity; the liquid leaves it along the entity's -Y.
+struct Tap {
+    double litres_per_minute = 0;
+    double radius = 0.01;
+    double speed = 0;
+    Vec3 position;
+    EntityIndex liquid = 0;
+    bool open = true;
+    friend bool operator==(const Tap&, const Tap&) = default;
+};
+
+template <>
+inline constexpr auto fields_of<Tap> = std::tuple{
+    always_saved("litres_per_minute", &Tap::litres_per_minute, "how much comes; 0: it is no tap", {0, 6e5, "l/min"}),
+    always_saved("radius", &Tap::radius, "of the mouth, a disc across the entity's -Y, along which the liquid comes",
+                 {0, 10, "m"}),
+    always_saved("speed", &Tap::speed,
+                 "at which it comes; 0: that which fills the mouth. A higher one makes drops, as a shower",
+                 {0, 100, "m/s"}),
+    always_saved("position", &Tap::position, "of the middle of the mouth, in the entity's frame, outside of solids",
+                 {.unit = "m"}),
+    always_saved("liquid", &Tap::liquid, "index of the liquid that gains what comes; 0: that with the lowest index",
+                 {0, last_document_index}),
+    always_saved("open", &Tap::open, "whether it is open at the start"),
+};
+static_assert(lists_all_members<Tap>(), "a member of Tap is in no list, or one is there twice");
+
+/// A hole on an entity: takes the liquid that comes into a ball.
+struct Drain {
+    double radius = 0;
+    Vec3 position;
+    bool open = true;
+    friend bool operator==(const Drain&, const Drain&) = default;
+};
+
+template <>
+inline constexpr auto fields_of<Drain> = std::tuple{
+    always_saved("radius", &Drain::radius,
+                 "of the ball whose drops go; 0: it is no drain. Below half a cell of the liquid it is hardly felt",
+                 {0, 10, "m"}),
+    always_saved("position", &Drain::position, "of the middle of the ball, in the entity's frame", {.unit = "m"}),
+    always_saved("open", &Drain::open, "whether it is open at the start"),
+};
+static_assert(lists_all_members<Drain>(), "a member of Drain is in no list, or one is there twice");
+
 /// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): geometry, attributes and pose.
 struct Entity {
     EntityIndex index = 0;
@@ -99,6 +144,9 @@ struct Entity {
     std::string group;  ///< "Dining/Chairs": a group within a group; empty: in none
     bool locked = false;
     Light light;
+    Tap tap;
+    Drain drain;
+    bool starts_empty = false;
     Finish finish = Finish::plain;
 };
 
@@ -133,6 +181,10 @@ inline constexpr auto fields_of<Entity> = std::tuple{
                    "modelled"),
     saved_when_set("locked", &Entity::locked, "whether its pose, size and existence are kept from edits by hand"),
     saved_when_set("light", &Entity::light, "of a lamp"),
+    saved_when_set("tap", &Entity::tap, "of what liquid comes from; it goes along with its entity"),
+    saved_when_set("drain", &Entity::drain, "of what takes liquid; it goes along with its entity"),
+    saved_when_set("starts_empty", &Entity::starts_empty,
+                   "of a liquid: it begins without a drop, for a tap to fill; its shape tells how fine the drops are"),
     saved_when_set("finish", &Entity::finish,
                    "of a primitive, over its colour: `plain`, `parquet`, `tiles`, `concrete`, `plaster`, `brick`, "
                    "`grass` or `fabric`"),

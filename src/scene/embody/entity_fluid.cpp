@@ -19,6 +19,7 @@ Result<LiquidDefinition> EntityPoints::liquid(const Entity& entity, const attrib
     const attributes::AttributeEntry* cells = attributes.find("fluid_cell_size");
     if (cells != nullptr && cells->level == attributes::AttributeLevel::manual)
         liquid.set_cell_size = liquid.matter.cell_size;
+    liquid.starts_empty = entity.kept ? entity.kept->places.values.empty() : entity.starts_empty;
     if (entity.kept) {
         liquid.places = places_of(*entity.kept);
         liquid.matter.cell_size = entity.kept->cell_size;

@@ -33,7 +33,9 @@ GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet&
 }
 
 EntityForm particles_form(const Entity& entity, GeometryKey key, double budget, bool is_liquid) {
-    const KeptFit fit = fit_of_particles(key, entity.geometry, static_cast<std::size_t>(budget), is_liquid);
+    KeptFit fit = fit_of_particles(key, entity.geometry, static_cast<std::size_t>(budget), is_liquid);
+    // A drain may have taken all of a liquid.
+    if (is_liquid) fit.min_points = 0;
     return {true, std::move(key), {}, fit};
 }
 
@@ -67,9 +69,12 @@ EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeS
         case Matter::grains:
             return particles_form(entity, points_key(entity, attributes, {"simulated_diameter", "grain_budget"}),
                                   attributes.number("grain_budget", 2000), false);
-        case Matter::liquid:
-            return particles_form(entity, points_key(entity, attributes, {"fluid_cell_size", "particle_budget"}),
+        case Matter::liquid: {
+            GeometryKey key = points_key(entity, attributes, {"fluid_cell_size", "particle_budget"});
+            if (entity.starts_empty) key.words.emplace_back("starts_empty");
+            return particles_form(entity, std::move(key),
                                   attributes.number("particle_budget", 20000) * max_particles_ratio, true);
+        }
         case Matter::solid:
             return soft_form(entity, attributes);
         case Matter::sheet:

@@ -34,6 +34,7 @@ struct LiquidDefinition {
     double set_cell_size = 0;                ///< m, told by hand; 0: the cells of the matter come from the budget
     Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid body
     Vec3 force;                              ///< constant, N, distributed over the particles
+    bool starts_empty = false;               ///< its shape tells where taps will fill it
     bool enabled = true;
 };
 

@@ -30,6 +30,10 @@ constexpr const char* name_of<Pin> = "Pin";
 template <>
 constexpr const char* name_of<Light> = "Light";
 template <>
+constexpr const char* name_of<Tap> = "Tap";
+template <>
+constexpr const char* name_of<Drain> = "Drain";
+template <>
 constexpr const char* name_of<KeptForm> = "KeptForm";
 template <>
 constexpr const char* name_of<Entity> = "Entity";

@@ -12,6 +12,7 @@
 
 namespace embody::scene {
 
+using physics::FluidDrop;
 using physics::FluidParticles;
 using physics::SleepState;
 
@@ -22,6 +23,7 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     made->force_ = definition.force;
     made->set_cell_size_ = definition.set_cell_size;
     made->has_run_ = !definition.places.empty();
+    made->particle_budget_ = definition.particle_budget;
     Result<std::vector<Vec3>> places =
         definition.places.empty() ? made->fill(definition) : Result<std::vector<Vec3>>(definition.places);
     if (!places.ok()) return places.error();
@@ -31,7 +33,9 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
         place = transform_point(definition.pose, place);
         bounds.add(place);
     }
-    std::vector<Particle> particles;
+    made->room_ = bounds;
+    std::vector<FluidDrop> particles;
+    if (definition.starts_empty) places.value().clear();
     particles.reserve(places.value().size());
     for (const Vec3 position : places.value())
         particles.push_back(
@@ -76,18 +80,21 @@ FluidBody::~FluidBody() {
     if (part_) liquids_.remove(part_);
 }
 
-Result<void> FluidBody::put(const std::vector<Particle>& particles) {
+Result<void> FluidBody::put(const std::vector<FluidDrop>& particles) {
     std::vector<Vec3> places;
     places.reserve(particles.size());
-    for (const Particle& particle : particles) places.push_back(particle.position);
-    const Result<Liquids::Part*> part = has_run_ ? liquids_.add_again(matter_, places) : liquids_.add(matter_, places);
+    for (const FluidDrop& particle : particles) places.push_back(particle.position);
+    const Result<Liquids::Part*> part = places.empty() ? liquids_.add_empty(matter_, room_)
+                                        : has_run_     ? liquids_.add_drops(matter_, particles)
+                                                       : liquids_.add(matter_, places);
     if (!part.ok())
         return Error{"shape", "holds no liquid: " + part.error().why,
                      "place it outside of solid things, or make it larger"};
     part_ = part.value();
     part_->force = force_;
     part_->set_cell_size = set_cell_size_;
-    if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
+    const auto is_at_rest = [](const FluidDrop& particle) { return particle.velocity == Vec3{}; };
+    if (has_run_ || std::ranges::all_of(particles, is_at_rest)) return {};
 
     // Particles in solids were left out, so that ids are no indices into `particles`, but the order is the same.
     std::size_t at = 0;
@@ -112,10 +119,10 @@ Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
     return set_enabled(liquid.enabled);
 }
 
-std::vector<FluidBody::Particle> FluidBody::particles() const {
+std::vector<FluidDrop> FluidBody::particles() const {
     if (!part_) return kept_;
     const FluidParticles all = world_.fluid_particles(part_->fluid);
-    std::vector<Particle> own;
+    std::vector<FluidDrop> own;
     own.reserve(count());
     for (const std::uint32_t i : liquids_.particles_of(*part_))
         own.push_back({all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])});
@@ -126,7 +133,21 @@ std::size_t FluidBody::count() const { return part_ ? liquids_.particles_of(*par
 
 void FluidBody::read(std::vector<Vec3>& positions) const {
     positions.clear();
-    for (const Particle& particle : particles()) positions.push_back(particle.position);
+    for (const FluidDrop& particle : particles()) positions.push_back(particle.position);
+}
+
+void FluidBody::read_velocities(std::vector<Vec3>& velocities) const {
+    velocities.clear();
+    for (const FluidDrop& particle : particles()) velocities.push_back(particle.velocity);
+}
+
+// From what has come and what is there follows what has gone.
+std::uint64_t FluidBody::membership() const {
+    return (part_ ? part_->poured : 0) * (physics::max_fluid_particles + 1) + count();
+}
+
+std::size_t FluidBody::max_drops() const {
+    return particle_budget_ * (join_ == Join::joined ? max_particles_ratio : 1);
 }
 
 double FluidBody::particle_mass() const {
@@ -143,16 +164,16 @@ SleepState FluidBody::state() const {
 }
 
 Vec3 FluidBody::center_of_mass() const {
-    const std::vector<Particle> own = particles();
+    const std::vector<FluidDrop> own = particles();
     Vec3 sum;
-    for (const Particle& particle : own) sum += particle.position;
+    for (const FluidDrop& particle : own) sum += particle.position;
     return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
 }
 
 Vec3 FluidBody::linear_velocity() const {
-    const std::vector<Particle> own = particles();
+    const std::vector<FluidDrop> own = particles();
     Vec3 sum;
-    for (const Particle& particle : own) sum += particle.velocity;
+    for (const FluidDrop& particle : own) sum += particle.velocity;
     return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
 }
 
@@ -160,14 +181,14 @@ double FluidBody::mass() const { return particle_mass() * static_cast<double>(co
 
 Bounds FluidBody::bounds() const {
     Bounds bounds;
-    for (const Particle& particle : particles()) bounds.add(particle.position);
-    return bounds.is_empty() ? bounds : enlarged(bounds, radius());
+    for (const FluidDrop& particle : particles()) bounds.add(particle.position);
+    return bounds.is_empty() ? room_ : enlarged(bounds, radius());
 }
 
 // Casts a ray down from the lowest particle of each column of cells.
 std::optional<double> FluidBody::drop_distance(double max_distance) const {
     std::map<std::pair<int, int>, Vec3> lowest;
-    for (const Particle& particle : particles()) {
+    for (const FluidDrop& particle : particles()) {
         const Vec3 p = particle.position;
         const std::pair column{static_cast<int>(std::floor(p.x / matter_.cell_size)),
                                static_cast<int>(std::floor(p.z / matter_.cell_size))};
@@ -190,7 +211,7 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
     const Bounds box = bounds();
     if (box.is_empty()) return {};
     std::optional<SurfaceHit> nearest;
-    for (const Particle& particle : particles()) {
+    for (const FluidDrop& particle : particles()) {
         const Vec3 to = particle.position - origin;
         const double along = dot(to, direction), off = length_squared(to) - along * along;
         if (off > reach * reach) continue;
@@ -202,8 +223,14 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
 }
 
 Result<void> FluidBody::move(const Transform& motion) {
-    for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
+    for (FluidDrop& particle : kept_) particle = {transform_point(motion, particle.position), {}};
+    room_ = transformed(motion, room_);
     if (!part_) return {};
+    if (count() == 0) {
+        // Nothing is there to be moved: it begins anew there.
+        liquids_.remove(std::exchange(part_, nullptr));
+        return put({});
+    }
     Result<void> moved =
         world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
             position = transform_point(motion, position);
@@ -217,25 +244,16 @@ Result<void> FluidBody::move(const Transform& motion) {
 Result<void> FluidBody::set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
     if (!part_) return Error{"positions", "cannot be set while the liquid is disabled"};
     if (velocities.size() != positions.size()) return Error{"velocities", "must be as many as positions"};
-    // The ids of its drops are told in ascending order, as read() tells them; lost ones have none.
-    const FluidParticles all = world_.fluid_particles(part_->fluid);
-    std::vector<std::uint32_t> ids;
-    for (const std::uint32_t i : liquids_.particles_of(*part_)) ids.push_back(all.ids[i]);
-    Result<void> changed =
-        world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t id, Vec3& position, Vec3& velocity) {
-            const auto at = static_cast<std::size_t>(std::ranges::lower_bound(ids, id) - ids.begin());
-            if (at >= positions.size()) return false;
-            position = positions[at];
-            velocity = velocities[at];
-            return true;
-        });
-    if (!changed.ok()) return changed;
+    std::vector<FluidDrop> drops;
+    drops.reserve(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) drops.push_back({positions[i], velocities[i]});
+    if (Result<void> set = liquids_.set_drops(*part_, drops); !set.ok()) return set;
     return liquids_.regroup(*part_);
 }
 
 Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
     const Vec3 center = center_of_mass();
-    for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
+    for (FluidDrop& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
     if (!part_) return {};
     return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         velocity = linear + cross(angular, position - center);
@@ -244,7 +262,7 @@ Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
 }
 
 Result<void> FluidBody::apply_impulse(Vec3 impulse) {
-    if (!part_) return {};
+    if (!part_ || count() == 0) return {};
     const Vec3 change = impulse / mass();
     return world_.change_fluid(part_->fluid, part_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
         velocity += change;

@@ -21,6 +21,8 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override;  ///< of a ball with a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
+    void read_velocities(std::vector<Vec3>& velocities) const override;
+    [[nodiscard]] std::uint64_t membership() const override;
     /// Of the cells that its particles are made for, m.
     [[nodiscard]] double cell_size() const { return matter_.cell_size; }
     /// Cells whose sizes differ by no more than this factor, 1.26 in volume, count as the same.
@@ -30,6 +32,10 @@ public:
     [[nodiscard]] Join join() const { return join_; }
     /// The fluid of the world that its particles belong to; null while it is disabled.
     [[nodiscard]] physics::FluidHandle fluid() const { return part_ ? part_->fluid : physics::FluidHandle{}; }
+    /// Its particles in that fluid; null while it is disabled.
+    [[nodiscard]] Liquids::Part* part() const { return part_; }
+    /// Taps wait while it has so many.
+    [[nodiscard]] std::size_t max_drops() const;
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
@@ -50,13 +56,10 @@ public:
     Result<void> set_enabled(bool enabled) override;
 
 private:
-    struct Particle {
-        Vec3 position, velocity;
-    };
     FluidBody(physics::World& world, Liquids& liquids) : world_(world), liquids_(liquids) {}
-    [[nodiscard]] std::vector<Particle> particles() const;  ///< in the order of their ids
+    [[nodiscard]] std::vector<physics::FluidDrop> particles() const;  ///< in the order of their ids
     [[nodiscard]] std::size_t count() const;
-    Result<void> put(const std::vector<Particle>& particles);
+    Result<void> put(const std::vector<physics::FluidDrop>& particles);
     [[nodiscard]] double particle_mass() const;
     /// Fills the shape: sets the cell size and returns the places of the particles, in the shape's frame, m.
     Result<std::vector<Vec3>> fill(const LiquidDefinition& definition);
@@ -66,10 +69,12 @@ private:
     physics::FluidDefinition matter_;
     Vec3 force_;                ///< constant, N
     double set_cell_size_ = 0;  ///< m, told by hand; 0: none
+    std::size_t particle_budget_ = 0;
+    Bounds room_;  ///< where it began, m, world: where it is to be while it has no particle
     Join join_ = Join::none_other;
-    Liquids::Part* part_ = nullptr;  ///< null while it is disabled
-    std::vector<Particle> kept_;     ///< state of the particles while it is disabled
-    bool has_run_ = false;           ///< whether kept_ is of a run, and not as it was filled
+    Liquids::Part* part_ = nullptr;         ///< null while it is disabled
+    std::vector<physics::FluidDrop> kept_;  ///< state of the particles while it is disabled
+    bool has_run_ = false;                  ///< whether kept_ is of a run, and not as it was filled
 };
 
 /// Null for points that are no liquid, and for a null pointer.

@@ -2,10 +2,8 @@
 #include "scene/matter/liquids.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <set>
 
 namespace embody::scene {
 
@@ -46,11 +44,20 @@ double cells_of(const Bounds& bounds, double cell) {
 
 }  // namespace
 
+Bounds Liquids::bounds_of(SharedFluid& shared) {
+    locate(shared);
+    Bounds bounds = world_.fluid_particles(shared.fluid).bounds;
+    for (const auto& part : shared.parts)
+        if (part->places.empty()) bounds.add(part->start);
+    return bounds;
+}
+
 Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
     for (SharedFluid& shared : fluids_) {
         if (shared.fluid == wish.except) continue;
         const FluidDefinition& other = *world_.fluid(shared.fluid);
         const FluidParticles particles = world_.fluid_particles(shared.fluid);
+        const Bounds bounds = bounds_of(shared);
         const bool is_moved_alike =
             wish.matter.gravity_factor == other.gravity_factor && wish.matter.allow_sleep == other.allow_sleep;
         if (!is_moved_alike || particles.is_frozen) continue;
@@ -59,11 +66,11 @@ Liquids::SharedFluid* Liquids::to_join(const Wish& wish) {
         };
         const auto is_same = [&](const auto& part) { return part->matter == matter_of(wish.matter); };
         const bool are_layers = wish.ratio_limit > 1 && std::ranges::none_of(shared.parts, is_same) &&
-                                are_above_each_other(particles.bounds, wish.bounds);
+                                are_above_each_other(bounds, wish.bounds);
         if (!are_within(wish.matter.cell_size / other.cell_size, wish.ratio_limit) && !are_layers &&
             std::ranges::none_of(shared.parts, is_set_alike))
             continue;
-        Bounds both = particles.bounds;
+        Bounds both = bounds;
         both.add(wish.bounds);
         if (cells_of(both, other.cell_size) < max_cells) return &shared;
     }
@@ -81,11 +88,13 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     auto part = std::make_unique<Part>();
     Part* added = part.get();
     part->matter = matter_of(matter);
+    part->start = bounds;
     if (const SharedFluid* shared = to_join({matter, bounds})) {
         part->fluid = shared->fluid;
-        const Result<physics::FluidIds> ids = add_particles(*part, places);
+        const Result<physics::FluidIds> ids = world_.add_to_fluid(part->fluid, places);
         if (!ids.ok()) return ids.error();
         part->ids = ids.value();
+        if (Result<void> set = world_.set_liquid(part->fluid, part->ids, part->matter); !set.ok()) return set.error();
     } else {
         FluidDefinition definition = matter;
         definition.points.assign(places.begin(), places.end());
@@ -99,63 +108,37 @@ Result<Liquids::Part*> Liquids::add(const FluidDefinition& matter, std::span<con
     return added;
 }
 
-Result<physics::FluidIds> Liquids::add_particles(const Part& part, std::span<const Vec3> places) {
-    const Result<physics::FluidIds> ids = world_.add_to_fluid(part.fluid, places);
-    if (!ids.ok()) return ids.error();
-    if (Result<void> set = world_.set_liquid(part.fluid, ids.value(), part.matter); !set.ok()) return set.error();
-    return ids.value();
+Result<Liquids::Part*> Liquids::add_empty(const FluidDefinition& matter, const Bounds& bounds) {
+    auto part = std::make_unique<Part>();
+    Part* added = part.get();
+    part->matter = matter_of(matter);
+    part->start = bounds;
+    if (const SharedFluid* shared = to_join({matter, bounds})) {
+        part->fluid = shared->fluid;
+        const Result<physics::FluidIds> ids = world_.make_room(part->fluid, {}, 0);
+        if (!ids.ok()) return ids.error();
+        part->ids = ids.value();
+    } else {
+        FluidDefinition definition = matter;
+        definition.points = {bounds.lower, bounds.upper};
+        definition.starts_empty = true;
+        const Result<FluidHandle> fluid = world_.create_fluid(definition);
+        if (!fluid.ok()) return fluid.error();
+        part->fluid = fluid.value();
+    }
+    put(std::move(part));
+    return added;
 }
 
-Result<Liquids::Part*> Liquids::add_again(const FluidDefinition& matter, std::span<const Vec3> places) {
-    const Result<Part*> added = add(matter, places);
-    if (!added.ok() || particles_of(*added.value()).size() == places.size()) return added;
-    Part& part = *added.value();
-
-    // Particles that were not left out are in the order of their places.
-    constexpr double same_place = 1e-4;  // m
-    using Cell = std::array<std::int64_t, 3>;
-    const auto cell_of = [&](Vec3 place) {
-        Cell cell{};
-        for (int axis = 0; axis < 3; ++axis)
-            cell[static_cast<std::size_t>(axis)] = std::llround(place[axis] / matter.cell_size);
-        return cell;
-    };
-    const FluidParticles particles = world_.fluid_particles(part.fluid);
-    std::set<Cell> filled;
-    std::vector<bool> is_there(places.size(), false);
-    std::size_t at = 0;
-    for (const std::uint32_t i : particles_of(part)) {
-        const Vec3 position = particles.origin + to_vec3(particles.positions[i]);
-        while (at < places.size() && length(places[at] - position) > same_place) ++at;
-        if (at == places.size()) break;
-        is_there[at++] = true;
-        filled.insert(cell_of(position));
+Result<Liquids::Part*> Liquids::add_drops(const FluidDefinition& matter, std::span<const physics::FluidDrop> drops) {
+    Bounds bounds;
+    for (const physics::FluidDrop& drop : drops) bounds.add(drop.position);
+    const Result<Part*> added = add_empty(matter, bounds);
+    if (!added.ok()) return added;
+    if (const Result<void> set = set_drops(*added.value(), drops); !set.ok()) {
+        remove(added.value());
+        return set.error();
     }
-    const auto is_near = [&](Vec3 place) {
-        const auto [x, y, z] = cell_of(place);
-        for (int k = 0; k < 27; ++k)
-            if (filled.contains({x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1})) return true;
-        return false;
-    };
-    std::vector<Vec3> wanted;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        if (is_there[i] || is_near(places[i])) wanted.push_back(places[i]);
-
-    // They are made where there is room, and put to their places afterwards.
-    const std::size_t count = part.ids.last - part.ids.first;
-    const auto first = static_cast<std::size_t>(std::ranges::find(is_there, true) - is_there.begin());
-    if (wanted.size() <= count || first == is_there.size()) return added;
-    const std::size_t missing = wanted.size() - count;
-    const Result<physics::FluidIds> more = add_particles(part, std::vector<Vec3>(missing, places[first]));
-    if (!more.ok()) return added;
-    part.ids.last = more.value().last;
-    find(part.fluid)->version = 0;
-    const Result<void> put = world_.change_fluid(part.fluid, part.ids, [&](std::uint32_t id, Vec3& position, Vec3&) {
-        const std::size_t index = id - part.ids.first;
-        if (index < wanted.size()) position = wanted[index];
-        return index < wanted.size();
-    });
-    if (!put.ok()) return put.error();
     return added;
 }
 
@@ -165,6 +148,43 @@ void Liquids::put(std::unique_ptr<Part> part) {
     if (shared == fluids_.end()) shared = fluids_.insert(shared, SharedFluid{part->fluid, {}, 0});
     shared->parts.push_back(std::move(part));
     shared->version = 0;
+}
+
+// The part is the last one then; its ids have no room.
+void Liquids::set_newest_ids(Part& part, physics::FluidIds ids) {
+    SharedFluid& shared = *find(part.fluid);
+    const auto at = std::ranges::find_if(shared.parts, [&](const auto& other) { return other.get() == &part; });
+    std::rotate(at, at + 1, shared.parts.end());
+    shared.version = 0;
+    part.ids = ids;
+    part.room = {};
+    part.used_room = 0;
+}
+
+Result<void> Liquids::make_room(Part& part, std::uint32_t count) {
+    if (part.room.last - part.room.first - part.used_room >= count) return {};
+    // Doubled each time, so that the ids of a particle change a few times only.
+    constexpr std::size_t min_room = 4096;
+    const auto room = static_cast<std::uint32_t>(std::max({std::size_t{count}, min_room, particles_of(part).size()}));
+    const Result<physics::FluidIds> ids = world_.make_room(part.fluid, part.ids, room);
+    if (!ids.ok()) return ids.error();
+    set_newest_ids(part, ids.value());
+    part.room = {ids.value().last - room, ids.value().last};
+    return {};
+}
+
+void Liquids::count_poured(Part& part, std::uint64_t count) {
+    part.poured += count;
+    part.used_room += static_cast<std::uint32_t>(count);
+}
+
+Result<void> Liquids::set_drops(Part& part, std::span<const physics::FluidDrop> drops) {
+    const Result<physics::FluidIds> ids = world_.add_drops(part.fluid, drops);
+    if (!ids.ok()) return ids.error();
+    const auto remove = [](std::uint32_t, Vec3&, Vec3&) { return false; };
+    if (Result<void> removed = world_.change_fluid(part.fluid, part.ids, remove); !removed.ok()) return removed;
+    set_newest_ids(part, ids.value());
+    return world_.set_liquid(part.fluid, part.ids, part.matter);
 }
 
 // Removes the part from its fluid's list, and the list with its last part.
@@ -221,6 +241,8 @@ Result<void> Liquids::hand_over(Part& part, FluidHandle to) {
     std::unique_ptr<Part> taken = take(part);
     taken->fluid = moved.value().fluid;
     taken->ids = moved.value().ids;
+    taken->room = {};
+    taken->used_room = 0;
     put(std::move(taken));
     return {};
 }

@@ -24,6 +24,10 @@ public:
     struct Part {
         physics::FluidHandle fluid;
         physics::FluidIds ids;
+        Bounds start;                       ///< where it began, m, world; it is taken to be there while it is empty
+        physics::FluidIds room;             ///< the last of its ids: kept for what taps will add
+        std::uint32_t used_room = 0;        ///< so many of these are used
+        std::uint64_t poured = 0;           ///< particles that taps have added
         std::vector<std::uint32_t> places;  ///< indices, see particles_of
         physics::LiquidMatter matter;
         double set_cell_size = 0;  ///< m, told by hand; 0: none. The fluid's may be larger
@@ -35,14 +39,21 @@ public:
     /// Adds particles of that cell size at these places (m, world), at rest; places in solids are left out. `matter`
     /// has neither volume nor velocity. The part is valid until remove().
     Result<Part*> add(const physics::FluidDefinition& matter, std::span<const Vec3> places);
-    /// Adds particles that have run: of those in solids all that are about a cell from one that is not, since they
-    /// touch walls to rounding and a little beyond.
-    Result<Part*> add_again(const physics::FluidDefinition& matter, std::span<const Vec3> places);
+    /// A part without particles, which are to come within these bounds (m, world).
+    Result<Part*> add_empty(const physics::FluidDefinition& matter, const Bounds& bounds);
+    /// Adds particles that have run exactly there, also where solids are by now: these push them out.
+    Result<Part*> add_drops(const physics::FluidDefinition& matter, std::span<const physics::FluidDrop> drops);
     /// Removes its particles from the world.
     void remove(Part* part);
     /// Indices of its particles in the world's fluid_particles(part.fluid), in the order of their ids. Valid until the
     /// world or a part changes.
     const std::vector<std::uint32_t>& particles_of(const Part& part);
+    /// Keeps ids for so many particles that taps add in the next step: see part.room.
+    Result<void> make_room(Part& part, std::uint32_t count);
+    /// Taps have added so many.
+    static void count_poured(Part& part, std::uint64_t count);
+    /// Removes its particles and adds these, exactly there.
+    Result<void> set_drops(Part& part, std::span<const physics::FluidDrop> drops);
     /// Changes the matter; the cell size must be the same.
     Result<void> set_matter(Part& part, const physics::FluidDefinition& matter);
     /// Call after its particles were moved: it leaves a fluid that is too far away, or joins another one.
@@ -68,14 +79,15 @@ private:
         physics::FluidHandle except;
     };
     [[nodiscard]] SharedFluid* to_join(const Wish& wish);
+    /// Of its particles, and of where its empty parts are to be.
+    [[nodiscard]] Bounds bounds_of(SharedFluid& shared);
     [[nodiscard]] std::vector<SharedFluid>::iterator find(physics::FluidHandle fluid);
     void locate(SharedFluid& shared);
-    /// Particles of the part's matter in its fluid.
-    Result<physics::FluidIds> add_particles(const Part& part, std::span<const Vec3> places);
     [[nodiscard]] Bounds bounds_of(const Part& part);
     Result<void> hand_over(Part& part, physics::FluidHandle to);
     std::unique_ptr<Part> take(Part& part);
     void put(std::unique_ptr<Part> part);
+    void set_newest_ids(Part& part, physics::FluidIds ids);
 
     physics::World& world_;
     std::vector<SharedFluid> fluids_;

@@ -26,12 +26,17 @@ class Liquids;
 class ShownPoints {
 public:
     virtual ~ShownPoints() = default;
-    /// Positions, world, m: always in the same order and of the same number, except for lost drops of liquid.
+    /// Positions, world, m: always in the same order and of the same number, except for drops of liquid that are lost
+    /// or come last.
     virtual void read(std::vector<Vec3>& positions) const = 0;
     /// Radius of the ball that is drawn at each point, m; 0: the points deform the thing's own drawn form.
     [[nodiscard]] virtual double radius() const = 0;
     /// Whether they are drawn as one liquid, each as a ball of its volume.
     [[nodiscard]] virtual bool is_liquid() const { return false; }
+    /// Another number whenever points have come or gone.
+    [[nodiscard]] virtual std::uint64_t membership() const { return 0; }
+    /// Of points that may come or go: their velocities, m/s, in the order of read(); else none.
+    virtual void read_velocities(std::vector<Vec3>& velocities) const { velocities.clear(); }
 };
 
 /// The points of an entity that is not one body, whatever solver moves them. Their world outlives them; the destructor
@@ -49,7 +54,7 @@ public:
     [[nodiscard]] virtual physics::SleepState state() const = 0;
     [[nodiscard]] virtual Vec3 center_of_mass() const = 0;
     [[nodiscard]] virtual double mass() const = 0;  ///< kg
-    /// Bounds of the drawn form.
+    /// Bounds of the drawn form; of a liquid without a drop those of where it is to come.
     [[nodiscard]] virtual Bounds bounds() const = 0;
     /// How far they can move down together until one touches another body, m; empty if none does within `max_distance`.
     [[nodiscard]] virtual std::optional<double> drop_distance(double max_distance) const = 0;
@@ -66,8 +71,8 @@ public:
     virtual Result<void> set_definition(const PointsDefinition& definition) = 0;
     /// Moves all of them as one rigid body; then they are at rest.
     virtual Result<void> move(const Transform& motion) = 0;
-    /// Puts each point at a place, m, with a velocity, m/s; in the order of read(). Of liquids drops that have no place
-    /// go, and places without a drop are left out; others are refused where the numbers differ.
+    /// Puts each point at a place, m, with a velocity, m/s; in the order of read(). Liquids have as many drops
+    /// afterwards; others are refused where the numbers differ.
     virtual Result<void> set_points(std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
     /// Velocities as of one rigid body that turns about its centre of mass.
     virtual Result<void> set_velocity(Vec3 linear, Vec3 angular) = 0;

@@ -44,6 +44,8 @@ Document part_of(const Document& document, const std::vector<EntityIndex>& indic
     for (const EntityIndex index : indices) {
         part.entities.push_back(*document.find(index));
         std::erase_if(part.entities.back().pins, [&](const Pin& pin) { return pin.to && !is_in(*pin.to); });
+        EntityIndex& liquid = part.entities.back().tap.liquid;
+        if (!is_in(liquid)) liquid = 0;
         part.next_index = index + 1;
     }
     for (const SceneJoint& joint : document.joints)
@@ -79,6 +81,8 @@ Result<std::vector<EntityIndex>> PartAdder::add(const Document& part, const Tran
         for (Pin& pin : copy.pins) {
             if (pin.to) pin.to = copy_of.at(*pin.to);
         }
+        const auto liquid = copy_of.find(copy.tap.liquid);
+        copy.tap.liquid = liquid == copy_of.end() ? 0 : liquid->second;
         if (!copy.name.empty()) copy.name = state_.lookup.names.free_name(copy.name);
         state_.lookup.names.add(copy.name);
         names_.push_back(copy.name);

@@ -24,7 +24,7 @@ struct LimitText {
     physics::StepLimit limit;
     const char* text;
 };
-constexpr std::array<LimitText, 10> limit_texts = {{
+constexpr std::array<LimitText, 9> limit_texts = {{
     {physics::StepLimit::linear_speed_clamped,
      "Something was faster than the scene's greatest speed and was slowed down."},
     {physics::StepLimit::angular_speed_clamped,
@@ -38,7 +38,6 @@ constexpr std::array<LimitText, 10> limit_texts = {{
      "A liquid's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::fluid_particles_lost,
      "Liquid ran so far away that it was taken out; a floor or walls keep it."},
-    {physics::StepLimit::fluid_source_waits, "A source waits: its liquid has as many drops as the source allows."},
     {physics::StepLimit::impact_iterations_exhausted,
      "An impact was too complicated for one step; a smaller time step helps."},
     {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
@@ -67,6 +66,10 @@ json SessionState::simulation_event() const {
 }
 
 void SessionState::tell_step() {
+    const auto name_of = [this](EntityIndex index) {
+        const Entity* entity = simulation->definition(index);
+        return entity && !entity->name.empty() ? entity->name : "Entity " + std::to_string(index);
+    };
     // Effects of actions.
     for (const EntityIndex index : simulation->spawned()) {
         const Entity* entity = simulation->definition(index);
@@ -84,8 +87,7 @@ void SessionState::tell_step() {
 
     for (const physics::RopeBreakEvent& broke : simulation->rope_breaks()) {
         const auto index = static_cast<EntityIndex>(broke.user_data);
-        const Entity* entity = simulation->definition(index);
-        const std::string who = entity && !entity->name.empty() ? entity->name : "Entity " + std::to_string(index);
+        const std::string who = name_of(index);
         tell({{"event", "rope_broke"},
               {"index", index},
               {"segment", broke.segment},
@@ -105,6 +107,12 @@ void SessionState::tell_step() {
                 .second)
             tell_message("info", broke.name + " broke into " + std::to_string(broke.pieces) + " pieces by a blow of " +
                                      attributes::short_number(broke.impulse) + " N s.");
+
+    for (const EntityIndex tap : simulation->waiting_taps())
+        if (told_problems.insert(std::to_string(tap) + " waits").second)
+            tell_message(
+                "warning",
+                name_of(tap) + ": the tap waits, as its liquid has as many drops as its particle budget allows.");
 
     // Each problem is told once in a run.
     for (const Error& problem : simulation->problems())

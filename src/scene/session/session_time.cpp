@@ -152,7 +152,7 @@ Result<std::vector<std::string>> SessionState::branch() {
     if (ropes) notes.emplace_back("ropes that had broken are whole again");
     const bool values = std::ranges::any_of(document.actions, [&](const Action& action) {
         return done.fired.contains(action.id) &&
-               (std::holds_alternative<SetAttribute>(action.effect) ||
+               (std::holds_alternative<SetAttribute>(action.effect) || std::holds_alternative<SetOpen>(action.effect) ||
                 std::holds_alternative<SetEnabled>(action.effect) || std::holds_alternative<ApplyForce>(action.effect));
     });
     if (values) notes.emplace_back("what actions had set or still pushed is as in the scene again");

@@ -5,14 +5,11 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <unordered_map>
 #include <utility>
 
 #include "attributes/surfaces.h"
 #include "attributes/to_physics.h"
 #include "scene/document/document_field.h"
-#include "scene/matter/fluid_body.h"
-#include "scene/matter/liquid_notes.h"
 #include "scene/simulation/simulation_state.h"
 
 namespace embody::scene {
@@ -30,24 +27,6 @@ std::vector<physics::ContactEvent> contacts_between_entities(const physics::Worl
         if (event.user_data_a != event.user_data_b && event.user_data_a != 0 && event.user_data_b != 0)
             contacts.push_back(event);
     return contacts;
-}
-
-std::string name_of(EntityIndex index, const LiveEntity& entity) {
-    const std::string& name = entity.definition.name;
-    return name.empty() ? "Entity " + std::to_string(index) : name;
-}
-
-// Adds notes of liquids of different fluids that overlap.
-void add_notes_of_liquids(const std::vector<std::pair<std::string, const FluidBody*>>& liquids,
-                          std::vector<std::string>& notes) {
-    for (std::size_t a = 0; a < liquids.size(); ++a) {
-        for (std::size_t b = a + 1; b < liquids.size(); ++b) {
-            const FluidBody &one = *liquids[a].second, &other = *liquids[b].second;
-            if (one.fluid() == other.fluid() || !are_overlapping(one, other)) continue;
-            notes.push_back(liquids[b].first + " is in " + liquids[a].first +
-                            ": liquids of other cells do not see each other.");
-        }
-    }
 }
 
 // Liquids of unlike densities share one grid, whose cells are those of the first: the one with the coarsest cells, as
@@ -138,7 +117,9 @@ const physics::StepReport& Simulation::step() {
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
     state.liquids.push(state.world->settings().time_step);
+    state.set_ports();
     const physics::StepReport& report = state.world->step();
+    state.count_ports();
     state.take_pieces();
     state.liquids.separate_distant();
     const auto sleeps = state.world->sleep_events();
@@ -179,28 +160,6 @@ bool Simulation::contains(EntityIndex entity) const { return state_->live.contai
 BodyHandle Simulation::body(EntityIndex entity) const {
     const LiveEntity* found = state_->find(entity);
     return found ? found->body : BodyHandle{};
-}
-
-std::vector<std::string> Simulation::notes() const {
-    // Things of one name have one message, at the place of the first of them.
-    std::vector<std::pair<std::string, int>> told;
-    std::unordered_map<std::string, std::size_t> places;
-    std::vector<std::pair<std::string, const FluidBody*>> liquids;
-    for (const EntityIndex index : state_->remarkable) {
-        const LiveEntity& entity = state_->live.at(index);
-        const FluidBody* liquid = as_liquid(entity.points.get());
-        if (liquid && !liquid->fluid().is_null()) liquids.emplace_back(name_of(index, entity), liquid);
-        if (entity.form.note.empty()) continue;
-        const std::string note = name_of(index, entity) + " " + entity.form.note;
-        const auto [place, is_new] = places.emplace(note, told.size());
-        if (is_new) told.emplace_back(note, 0);
-        ++told[place->second].second;
-    }
-    std::vector<std::string> notes;
-    for (const auto& [note, count] : told)
-        notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
-    add_notes_of_liquids(liquids, notes);
-    return notes;
 }
 
 const MovingPoints* Simulation::points(EntityIndex entity) const {

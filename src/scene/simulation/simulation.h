@@ -56,6 +56,12 @@ struct Arrivals {
     std::vector<Error> refused;  ///< what could not be put into the world, and why; it waits no more
 };
 
+/// Why nothing goes through an entity's tap or drain; the error's `where` is the field.
+struct PortFault {
+    EntityIndex entity = 0;
+    Error error;
+};
+
 /// A running document: each entity a body or points, each joint a joint, the actions active.
 class Simulation {
 public:
@@ -105,6 +111,14 @@ public:
     [[nodiscard]] bool is_touched(EntityIndex entity, Vec3 place, double radius) const;
     /// Entities that are not simulated as their kind, and why: "Towel is simulated as rigid, because …".
     [[nodiscard]] std::vector<std::string> notes() const;
+    [[nodiscard]] std::vector<PortFault> port_faults() const;
+    /// Taps that gave less than their flow in the last step: their liquid has as many drops as its budget allows.
+    [[nodiscard]] std::vector<EntityIndex> waiting_taps() const;
+    /// Drops that came from the entity's tap, and that went into its drain, since the start.
+    struct PassedDrops {
+        std::uint64_t poured = 0, drained = 0;
+    };
+    [[nodiscard]] PassedDrops passed_drops(EntityIndex entity) const;
     /// The points of an entity that is not one body. Null for others; valid until an edit.
     [[nodiscard]] const MovingPoints* points(EntityIndex entity) const;
     /// Pose of the entity's frame: its body's, or for points the pose that was set last.

@@ -24,6 +24,8 @@ Entity piece_of(const LiveEntity& whole, const physics::BodyDefinition& body, co
     piece.geometry = shape;
     piece.scale = 1;
     piece.light = {};
+    piece.tap = {};
+    piece.drain = {};
     piece.pose = {body.position, body.rotation};
     piece.linear_velocity = body.linear_velocity;
     piece.angular_velocity = body.angular_velocity;

@@ -41,6 +41,10 @@ Result<void> Simulation::State::change(EntityIndex index, const Effect& effect) 
         return entity.points ? entity.points->set_enabled(enable->enabled)
                              : world->set_enabled(entity.body, enable->enabled);
     }
+    if (const auto* set = std::get_if<SetOpen>(&effect)) {
+        entity.definition.tap.open = entity.definition.drain.open = set->open;
+        return {};
+    }
     remove_all({index});
     despawned.push_back(index);
     return {};

@@ -39,6 +39,7 @@ LiveEntity* Simulation::State::find(EntityIndex index) {
 Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     LiveEntity described;
     described.definition = entity;
+    if (Result<void> valid = check_ports(entity); !valid.ok()) return valid.error();
     Result<SharedAttributes> set = definitions.attributes.shared(entity);
     if (!set.ok()) return set.error();
     described.attributes = std::move(set).value();
@@ -127,6 +128,7 @@ Result<void> Simulation::State::add(const Entity& entity) {
     const LiveEntity& added = live.emplace(entity.index, std::move(described).value()).first->second;
     holds.add_pins(entity.index, entity.pins);
     list_remarkable(added);
+    list_ports(added);
     indices.insert(std::lower_bound(indices.begin(), indices.end(), entity.index), entity.index);
     return {};
 }
@@ -229,6 +231,7 @@ Result<void> Simulation::State::update(const Entity& entity, bool keep_motion) {
     *before = std::move(after);
     holds.add_pins(entity.index, entity.pins);
     list_remarkable(*before);
+    list_ports(*before);
     return fasten_to(*before, pins_before, is_new);
 }
 
@@ -251,6 +254,8 @@ void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
         if (!found->second.body.is_null()) shapes.release(found->second.shape_key, found->second.shape);
         holds.remove_pins(index, found->second.definition.pins);
         remarkable.erase(index);
+        liquid_entities.erase(index);
+        unlist_ports(index);
         live.erase(found);
     }
     const auto is_gone = [this](EntityIndex index) { return !live.contains(index); };

@@ -17,6 +17,11 @@ bool are_same_places(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return std::ranges::equal(a, b, [](Vec3 one, Vec3 other) { return length(one - other) <= same_place; });
 }
 
+// Whether a form without a point is another one than that it is modelled in.
+bool keeps_nothing(const LiveEntity& entity) {
+    return as_liquid(entity.points.get()) != nullptr && !entity.definition.starts_empty;
+}
+
 // `positions` in the world, `pose` of the entity's frame.
 SharedOptional<KeptForm> form_of(const LiveEntity& entity, std::vector<Vec3> positions, const Transform& pose,
                                  const physics::LastingDeformation& lasting) {
@@ -45,7 +50,7 @@ SharedOptional<KeptForm> Simulation::kept_form(EntityIndex index) const {
     if (!entity || !entity->points || !entity->definition.enabled) return {};
     std::vector<Vec3> positions;
     entity->points->read(positions);
-    if (positions.empty()) return {};
+    if (positions.empty() && !keeps_nothing(*entity)) return {};
     const SoftNodes* soft = as_soft(entity->points.get());
     return form_of(*entity, std::move(positions), state_->pose_of(*entity),
                    soft ? soft->lasting_deformation() : physics::LastingDeformation{});
@@ -56,7 +61,7 @@ SharedOptional<KeptForm> Simulation::kept_form(const EntityMoment& was, std::vec
     if (!entity || !entity->points || !entity->definition.enabled || !was.points) return {};
     std::vector<Vec3> positions;
     was.points->read(positions);
-    if (positions.empty()) return {};
+    if (positions.empty() && !keeps_nothing(*entity)) return {};
     return form_of(*entity, std::move(positions), was.motion.pose, {{}, std::move(broken)});
 }
 

@@ -37,6 +37,19 @@ struct LiveJoint {
     physics::JointHandle joint;
 };
 
+/// A tap or a drain in the world, and what went through it.
+struct LivePort {
+    physics::FluidPortHandle handle;  ///< null while it is shut or nothing can come
+    std::uint64_t seen = 0;           ///< of the handle's particles
+    std::uint64_t passed = 0;         ///< particles ever
+};
+
+/// Those of an entity.
+struct LivePorts {
+    LivePort tap, drain;
+    Liquids::Part* fed = nullptr;  ///< by the tap in this step
+};
+
 /// A push by an action, until a given time.
 struct TimedForce {
     EntityIndex entity = 0;
@@ -52,7 +65,8 @@ struct HandBall {
 };
 
 /// State of a simulation. Entities are made and changed in simulation_entities.cpp, their connections in
-/// simulation_holds.cpp, hands in simulation_hands.cpp, effects of actions in simulation_effects.cpp.
+/// simulation_holds.cpp, hands in simulation_hands.cpp, taps and drains in simulation_ports.cpp, effects of actions in
+/// simulation_effects.cpp.
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
           std::shared_ptr<FormCache> forms)
@@ -79,6 +93,8 @@ struct Simulation::State {
     std::map<std::uint32_t, SceneJoint> waiting_joints;  ///< of waiting entities
     HoldIndex holds;                                     ///< of pins and joints of all live entities
     std::set<EntityIndex> remarkable;                    ///< entities with a note, and liquids
+    std::set<EntityIndex> liquid_entities;
+    std::map<EntityIndex, LivePorts> ports;
     std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these exist
     std::vector<TimedForce> timed_forces;
     std::vector<HandBall> hands;
@@ -138,6 +154,17 @@ struct Simulation::State {
     Result<void> add_joint(const SceneJoint& joint);
     Result<void> remove_joint(std::uint32_t index);
 
+    // Taps and drains -------------------------------------------------------------------------------------------------
+
+    /// Call when an entity has come or changed, and when it goes.
+    void list_ports(const LiveEntity& entity);
+    void unlist_ports(EntityIndex index);
+    /// Before a step; and after it.
+    void set_ports();
+    void count_ports();
+    /// Why nothing goes through a tap or drain, whether or not it is open.
+    [[nodiscard]] std::optional<Error> port_fault(const LiveEntity& entity) const;
+
     // Effects of actions ----------------------------------------------------------------------------------------------
 
     void start_actions(const std::vector<Action>& list);
@@ -153,6 +180,10 @@ private:
     void leave(const Entity& entity);
     /// Adds the joints whose ends wait no more; the errors of those that the world refuses.
     std::vector<Error> add_joints_that_waited();
+
+    [[nodiscard]] const LiveEntity* liquid_of(const Tap& tap) const;
+    [[nodiscard]] std::optional<physics::FluidSource> open_source(const LiveEntity& entity);
+    void put_port(LivePort& port, const std::optional<physics::FluidPort>& wanted);
 
     Result<LiveEntity> describe(const Entity& entity);
     Result<physics::BodyDefinition> prepare_body(LiveEntity& entity);
@@ -180,6 +211,9 @@ private:
     [[nodiscard]] Vec3 center_of_mass(const LiveEntity& entity) const;
     [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const;
 };
+
+/// Whether tap and drain of the entity make sense; the error's `where` is the field.
+Result<void> check_ports(const Entity& entity);
 
 /// The error with the entity's name before its field.
 Error of_entity(const Entity& entity, Error error);

@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 
 #include "foundation/assert.h"
+#include "scene/simulation/take_numbers.h"
 
 namespace embody::scene {
 
 namespace {
 
 constexpr double samples_per_second = 60;
-/// Units of the numbers: docs/time.md.
-constexpr double position_units = 32768, rotation_units = 32767, velocity_units = 4096;
 /// Differences of a chunk, bytes, and how many times its beginning they are at least when it ends.
 constexpr std::size_t min_differences = 1 << 20, differences_per_beginning = 4;
 /// Half a nanosecond: the clock is a sum of steps.
@@ -22,52 +20,12 @@ constexpr double rounding = 5e-10;
 /// A chunk is at most this part of the ring.
 constexpr std::size_t chunks_per_ring = 8;
 
-constexpr std::uint8_t state_bits = 3, points_bit = 4, whole_bit = 8, liquid_bit = 16;
-
-std::int64_t to_units(double value, double units) {
-    constexpr double most = 1e15;
-    return std::isfinite(value) ? std::llround(std::clamp(value * units, -most, most)) : 0;
-}
-
-void write_unsigned(std::string& data, std::uint64_t value) {
-    while (value >= 0x80) {
-        data.push_back(static_cast<char>(value | 0x80));
-        value >>= 7;
-    }
-    data.push_back(static_cast<char>(value));
-}
-
-std::uint64_t read_unsigned(const char*& at) {
-    std::uint64_t value = 0;
-    for (int shift = 0;; shift += 7) {
-        const auto byte = static_cast<std::uint8_t>(*at++);
-        value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
-        if (byte < 0x80) return value;
-    }
-}
-
-// Small numbers of either sign are short.
-void write_signed(std::string& data, std::int64_t value) {
-    write_unsigned(data, (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
-}
-
-std::int64_t read_signed(const char*& at) {
-    const std::uint64_t value = read_unsigned(at);
-    return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
-}
-
-std::vector<std::int32_t> places_of(const ShownPoints& points) {
-    constexpr double most = 2e9;
-    std::vector<Vec3> positions;
-    points.read(positions);
-    std::vector<std::int32_t> places;
-    places.reserve(3 * positions.size());
-    for (const Vec3 p : positions)
-        for (const double value : {p.x, p.y, p.z}) {
-            const double units = std::isfinite(value) ? value * RecordedPoints::units_per_metre : 0;
-            places.push_back(static_cast<std::int32_t>(std::lround(std::clamp(units, -most, most))));
-        }
-    return places;
+// Where points come to by their steps; null where they have none.
+RecordedPoints::Places led_on(const RecordedPoints::Places& points, const RecordedPoints::Places& steps) {
+    if (!steps) return nullptr;
+    auto to = std::make_shared<std::vector<std::int32_t>>(*points);
+    for (std::size_t i = 0; i < to->size(); ++i) (*to)[i] += (*steps)[i];
+    return to;
 }
 
 }  // namespace
@@ -88,132 +46,6 @@ void RecordedPoints::read(std::vector<Vec3>& positions) const {
 // Samples
 // --------------------------------------------------------------------------------------------------------------
 
-Take::Track Take::quantised(const EntityMotion& motion, const Track* before, std::uint64_t number) {
-    Track track;
-    const Vec3 p = motion.pose.position, v = motion.linear_velocity, w = motion.angular_velocity;
-    Quat q = normalized(motion.pose.rotation);
-    if (before) {
-        const auto& was = before->numbers;
-        const Quat last{static_cast<double>(was[3]), static_cast<double>(was[4]), static_cast<double>(was[5]),
-                        static_cast<double>(was[6])};
-        // Both signs are the same rotation; the nearer one has small differences.
-        if (dot(last, q) < 0) q = {-q.x, -q.y, -q.z, -q.w};
-    }
-    track.numbers = {to_units(p.x, position_units), to_units(p.y, position_units), to_units(p.z, position_units),
-                     to_units(q.x, rotation_units), to_units(q.y, rotation_units), to_units(q.z, rotation_units),
-                     to_units(q.w, rotation_units), to_units(v.x, velocity_units), to_units(v.y, velocity_units),
-                     to_units(v.z, velocity_units), to_units(w.x, velocity_units), to_units(w.y, velocity_units),
-                     to_units(w.z, velocity_units)};
-    track.state = motion.state;
-    track.written = number;
-    if (before)
-        for (std::size_t i = 0; i < predicted; ++i) track.steps[i] = track.numbers[i] - before->numbers[i];
-    if (!motion.points) return track;
-
-    track.has_points = true;
-    track.is_liquid = motion.points->is_liquid();
-    track.radius = static_cast<float>(motion.points->radius());
-    constexpr std::uint8_t asleep = 2;
-    const bool had_points = before && before->has_points;
-    if (had_points && before->state == asleep && motion.state == asleep) {
-        track.points = before->points;
-        return track;
-    }
-    track.points = std::make_shared<std::vector<std::int32_t>>(places_of(*motion.points));
-    if (!had_points || before->points->size() != track.points->size()) return track;
-    auto steps = std::make_shared<std::vector<std::int32_t>>(track.points->size());
-    for (std::size_t i = 0; i < steps->size(); ++i) (*steps)[i] = (*track.points)[i] - (*before->points)[i];
-    track.point_steps = std::move(steps);
-    return track;
-}
-
-bool Take::is_same(const Track& a, const Track& b) {
-    return a.numbers == b.numbers && a.state == b.state && a.has_points == b.has_points && a.radius == b.radius &&
-           (a.points == b.points || (a.points && b.points && *a.points == *b.points));
-}
-
-// A whole track stands alone; another one is the difference from what `before` leads to.
-void Take::write(std::string& data, const Track& track, const Track* before, std::uint64_t number) {
-    const bool same_points =
-        before && before->has_points == track.has_points &&
-        (!track.has_points || (before->points->size() == track.points->size() && before->radius == track.radius));
-    const bool is_whole = !same_points;
-    data.push_back(static_cast<char>(track.state | (track.has_points ? points_bit : 0) | (is_whole ? whole_bit : 0) |
-                                     (track.is_liquid ? liquid_bit : 0)));
-    const bool goes_on = !is_whole && before->written + 1 == number;
-    for (std::size_t i = 0; i < track.numbers.size(); ++i) {
-        std::int64_t expected = is_whole ? 0 : before->numbers[i];
-        if (goes_on && i < predicted) expected += before->steps[i];
-        write_signed(data, track.numbers[i] - expected);
-    }
-    if (is_whole)
-        for (const std::int64_t step : track.steps) write_signed(data, step);
-    if (!track.has_points) return;
-
-    const std::vector<std::int32_t>& points = *track.points;
-    if (is_whole) {
-        char radius[sizeof(float)];
-        std::memcpy(radius, &track.radius, sizeof(float));
-        data.append(radius, sizeof(float));
-        write_unsigned(data, points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) write_signed(data, points[i] - (i < 3 ? 0 : points[i - 3]));
-        data.push_back(track.point_steps ? 1 : 0);
-        if (track.point_steps)
-            for (const std::int32_t step : *track.point_steps) write_signed(data, step);
-        return;
-    }
-    const std::vector<std::int32_t>* steps = goes_on ? before->point_steps.get() : nullptr;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        write_signed(data, points[i] - (*before->points)[i] - (steps ? (*steps)[i] : 0));
-}
-
-Take::Track Take::read(const char*& at, const Track* before, std::uint64_t number) {
-    Track track;
-    const auto bits = static_cast<std::uint8_t>(*at++);
-    const bool is_whole = (bits & whole_bit) != 0;
-    EMBODY_ASSERT(is_whole || before != nullptr);
-    track.state = bits & state_bits;
-    track.has_points = (bits & points_bit) != 0;
-    track.is_liquid = (bits & liquid_bit) != 0;
-    track.written = number;
-    const bool goes_on = !is_whole && before->written + 1 == number;
-    for (std::size_t i = 0; i < track.numbers.size(); ++i) {
-        std::int64_t expected = is_whole ? 0 : before->numbers[i];
-        if (goes_on && i < predicted) expected += before->steps[i];
-        track.numbers[i] = expected + read_signed(at);
-    }
-    for (std::size_t i = 0; i < predicted; ++i)
-        track.steps[i] = is_whole ? read_signed(at) : track.numbers[i] - before->numbers[i];
-    if (!track.has_points) return track;
-
-    if (is_whole) {
-        std::memcpy(&track.radius, at, sizeof(float));
-        at += sizeof(float);
-        auto points = std::make_shared<std::vector<std::int32_t>>(read_unsigned(at));
-        for (std::size_t i = 0; i < points->size(); ++i)
-            (*points)[i] = static_cast<std::int32_t>(read_signed(at) + (i < 3 ? 0 : (*points)[i - 3]));
-        track.points = std::move(points);
-        if (*at++ != 0) {
-            auto steps = std::make_shared<std::vector<std::int32_t>>(track.points->size());
-            for (std::int32_t& step : *steps) step = static_cast<std::int32_t>(read_signed(at));
-            track.point_steps = std::move(steps);
-        }
-        return track;
-    }
-    track.radius = before->radius;
-    const std::vector<std::int32_t>& last = *before->points;
-    const std::vector<std::int32_t>* expected = goes_on ? before->point_steps.get() : nullptr;
-    auto points = std::make_shared<std::vector<std::int32_t>>(last.size());
-    auto steps = std::make_shared<std::vector<std::int32_t>>(last.size());
-    for (std::size_t i = 0; i < last.size(); ++i) {
-        (*steps)[i] = static_cast<std::int32_t>(read_signed(at) + (expected ? (*expected)[i] : 0));
-        (*points)[i] = last[i] + (*steps)[i];
-    }
-    track.points = std::move(points);
-    track.point_steps = std::move(steps);
-    return track;
-}
-
 void Take::begin_chunk() {
     if (!chunks_.empty()) {
         chunks_.back().data.shrink_to_fit();
@@ -232,6 +64,7 @@ void Take::drop_oldest() {
 }
 
 void Take::sample(const Simulation& simulation) {
+    const double before = end();
     if (!is_open_) begin_chunk();
     Chunk& chunk = chunks_.back();
     const bool is_first = chunk.samples.empty();
@@ -252,7 +85,8 @@ void Take::sample(const Simulation& simulation) {
     simulation.visit([&](const EntityMotion& motion) {
         skip_removed(motion.entity);
         const bool is_known = known != tracks_.end() && known->first == motion.entity;
-        Track track = quantised(motion, is_known ? &known->second : nullptr, number_);
+        Track track =
+            quantised(motion, is_known ? &known->second : nullptr, number_, chunk.samples.back().time - before);
         if (is_known && is_same(track, known->second)) {
             // At rest since the last sample.
             known->second.point_steps = nullptr;
@@ -392,10 +226,12 @@ Moment Take::moment(const Cursor& cursor, double time, const std::set<EntityInde
         made.motion.linear_velocity = Vec3{number(7), number(8), number(9)} / velocity_units;
         made.motion.angular_velocity = Vec3{number(10), number(11), number(12)} / velocity_units;
         if (!track.has_points) continue;
-        made.points = std::make_shared<RecordedPoints>(track.points, next ? next->points : nullptr, part, track.radius,
-                                                       track.is_liquid);
-        made.motion.points = made.points.get();
         if (track.written == cursor.chunk->number + cursor.sample) made.point_steps = track.point_steps;
+        RecordedPoints::Places to = next ? next->points : nullptr;
+        if (next && next->is_renewed) to = led_on(track.points, made.point_steps);
+        made.points =
+            std::make_shared<RecordedPoints>(track.points, std::move(to), part, track.radius, track.is_liquid);
+        made.motion.points = made.points.get();
     }
     return moment;
 }

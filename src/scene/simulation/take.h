@@ -56,6 +56,8 @@ private:
         std::uint8_t state = 3;
         bool has_points = false, is_liquid = false;
         float radius = 0;
+        std::uint64_t membership = 0;                ///< of the simulation's points; 0 after reading
+        bool is_renewed = false;                     ///< its points are not those of the sample before
         RecordedPoints::Places points, point_steps;  ///< point_steps null: none
     };
     using Tracks = std::map<EntityIndex, Track>;
@@ -84,7 +86,9 @@ private:
         std::optional<Changes> next;  ///< of the sample after it
     };
 
-    static Track quantised(const EntityMotion& motion, const Track* before, std::uint64_t number);
+    /// `interval`: s since the sample before.
+    static Track quantised(const EntityMotion& motion, const Track* before, std::uint64_t number, double interval);
+    static bool are_same_points(const Track& a, const Track& b);
     static bool is_same(const Track& a, const Track& b);
     static void write(std::string& data, const Track& track, const Track* before, std::uint64_t number);
     static Track read(const char*& at, const Track* before, std::uint64_t number);

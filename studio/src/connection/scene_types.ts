@@ -170,6 +170,30 @@ export interface Light {
   on: boolean;
 }
 
+export interface Tap {
+  /** how much comes; 0: it is no tap (0 … 600000 l/min) */
+  litres_per_minute: number;
+  /** of the mouth, a disc across the entity's -Y, along which the liquid comes (0 … 10 m) */
+  radius: number;
+  /** at which it comes; 0: that which fills the mouth. A higher one makes drops, as a shower (0 … 100 m/s) */
+  speed: number;
+  /** of the middle of the mouth, in the entity's frame, outside of solids (m) */
+  position: Vector;
+  /** index of the liquid that gains what comes; 0: that with the lowest index (0 … 2147483647) */
+  liquid: number;
+  /** whether it is open at the start */
+  open: boolean;
+}
+
+export interface Drain {
+  /** of the ball whose drops go; 0: it is no drain. Below half a cell of the liquid it is hardly felt (0 … 10 m) */
+  radius: number;
+  /** of the middle of the ball, in the entity's frame (m) */
+  position: Vector;
+  /** whether it is open at the start */
+  open: boolean;
+}
+
 export interface Entity {
   /** the entity's number, once in a file (1 … 2147483647) */
   index: number;
@@ -215,6 +239,12 @@ export interface Entity {
   locked?: boolean;
   /** of a lamp */
   light?: Light;
+  /** of what liquid comes from; it goes along with its entity */
+  tap?: Tap;
+  /** of what takes liquid; it goes along with its entity */
+  drain?: Drain;
+  /** of a liquid: it begins without a drop, for a tap to fill; its shape tells how fine the drops are */
+  starts_empty?: boolean;
   /** of a primitive, over its colour: `plain`, `parquet`, `tiles`, `concrete`, `plaster`, `brick`, `grass` or `fabric` */
   finish?: Finish;
 }
@@ -352,6 +382,11 @@ export type Effect =
       type: "set_enabled";
       /** whether the receiver moves and collides */
       enabled?: boolean;
+    }
+  | {
+      type: "set_open";
+      /** whether the receiver's tap and drain are open */
+      open?: boolean;
     }
   | {
       type: "pause";

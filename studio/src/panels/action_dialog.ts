@@ -30,6 +30,7 @@ const EFFECTS: readonly { type: Effect["type"]; label: string; make: (near: Box)
   { type: "spawn", label: t("add a copy"), make: ({ upper, lower }) => ({ type: "spawn", pose: { position: [(lower[0] + upper[0]) / 2, upper[1] + 1, (lower[2] + upper[2]) / 2] } }) },
   { type: "remove", label: t("remove"), make: () => ({ type: "remove" }) },
   { type: "set_enabled", label: t("switch on or off"), make: () => ({ type: "set_enabled", enabled: false }) },
+  { type: "set_open", label: t("open or shut a tap or drain"), make: () => ({ type: "set_open", open: true }) },
   { type: "pause", label: t("pause the simulation"), make: () => ({ type: "pause" }) },
 ];
 const ANY = "any";
@@ -254,6 +255,12 @@ class ActionDialog {
         const on = truthField(t("Switch on"), (enabled) => change({ enabled }));
         on.set(effect.enabled ?? true);
         rows.push(labelled(t("Switch on"), on.root, t("Off: it neither moves nor collides")));
+        break;
+      }
+      case "set_open": {
+        const open = truthField(t("Open", { context: "tap" }), (value) => change({ open: value }));
+        open.set(effect.open ?? true);
+        rows.push(labelled(t("Open", { context: "tap" }), open.root, t("Off: shut")));
         break;
       }
       case "remove":

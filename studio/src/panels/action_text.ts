@@ -59,6 +59,8 @@ export function thenText(effect: Effect, receiver: Target | undefined, isCaused:
       return t("remove {{whom}}", { whom });
     case "set_enabled":
       return effect.enabled === false ? t("switch {{whom}} off", { whom }) : t("switch {{whom}} on", { whom });
+    case "set_open":
+      return effect.open === false ? t("shut tap and drain of {{whom}}", { whom }) : t("open tap and drain of {{whom}}", { whom });
     case "pause":
       return t("pause the simulation");
   }

@@ -244,18 +244,23 @@ export class EntityView {
     return this.clouds.of(index)?.tint() ?? this.batchOf.get(index)?.batch.tintOf(index) ?? [];
   }
 
-  /** The box around the entities; infinite planes count as a point. Empty when none is drawn. */
+  /** The box around the entities; infinite planes count as a point, a liquid without a drop as what it is to fill. Empty when none is drawn. */
   boundsOf(indices: Iterable<number>, now: number): Box3 {
     const bounds = new Box3();
     const matrix = new Matrix4();
     for (const index of indices) {
-      const cloud = this.clouds.of(index);
+      const cloud = this.isEmpty(index) ? undefined : this.clouds.of(index);
       if (cloud) bounds.union(cloud.bounds);
       const shown = cloud ? undefined : this.batchOf.get(index);
       if (!shown || shown.entity.shape?.type === "plane" || !this.matrixOf(index, now, matrix)) continue;
       bounds.union(shown.batch.drawable.bounds.clone().applyMatrix4(matrix));
     }
     return bounds;
+  }
+
+  /** A liquid that has no drop now. */
+  isEmpty(index: number): boolean {
+    return this.clouds.of(index)?.count === 0;
   }
 
   private known(): Set<number> {

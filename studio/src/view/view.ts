@@ -14,6 +14,7 @@ import { Environment, type Theme } from "./environment";
 import type { People } from "../document/people";
 import { PeopleView } from "./people_view";
 import { PinMarks } from "./pin_marks";
+import { PortMarks } from "./port_marks";
 import { Lamps } from "./lamps";
 import { Outline } from "./outline";
 import { smoothShadows } from "./soft_shadows";
@@ -58,6 +59,7 @@ export class View {
   readonly collision: CollisionOverlay;
   readonly debug = new DebugOverlay();
   readonly pins: PinMarks;
+  readonly ports: PortMarks;
   readonly people: PeopleView;
   readonly contactShadows: ContactShadows;
   readonly lamps: Lamps;
@@ -117,10 +119,11 @@ export class View {
     this.outline = new Outline(entities);
     this.collision = new CollisionOverlay(entities);
     this.pins = new PinMarks(entities.softs);
+    this.ports = new PortMarks(document, entities);
     this.people = new PeopleView(people, entities);
     this.contactShadows = new ContactShadows(entities);
     this.lamps = new Lamps(document, entities);
-    this.scene.add(entities.group, this.contactShadows.mesh, this.lamps.group, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points);
+    this.scene.add(entities.group, this.contactShadows.mesh, this.lamps.group, this.outline.group, this.people.group, this.collision.group, this.debug.group, this.pins.points, this.ports.lines);
     this.rig.changed.on(() => {
       entities.lookFrom(this.rig.camera.position);
       this.invalidate();
@@ -300,6 +303,7 @@ export class View {
     this.shadowsWait = this.contactShadows.update(now);
     this.collision.update(now);
     this.pins.update();
+    this.ports.update(now);
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
     const { target, distance } = this.headset ?? this.rig;
     this.lamps.update(now, target);

@@ -7,16 +7,24 @@ namespace embody::physics {
 
 /// Sheets and how their own layers are kept apart (src/physics/deformable/cloth, docs/physics/cloth.md).
 struct ClothSettings {
-    /// Maximum linear solves in a substep, as long as contacts change in them. Test: Settings.AreNoticed.
+    /// Maximum linear solves in a substep, as long as contacts change in them or stretch is unforeseen. Test:
+    /// Settings.AreNoticed.
     int max_solves = 8;
     /// Further solves in a substep with contacts of what would pass through each other. Test: Settings.AreNoticed.
     int max_meeting_solves = 4;
     /// Residual at which a solve ends, over that of min_gravity in the preconditioner's norm. Source: D. Baraff, A.
     /// Witkin, "Large steps in cloth simulation", 1998, section 5.3, end in that norm too. Test: Settings.AreNoticed.
     double gradient_tolerance = 5e-3;
+    /// Energy of stretch that a solve's linear equations did not foresee, over that of the sheet's motion, above which
+    /// the next solve is about the moves found. Test: ClothLanding.NothingIsGainedWhereASheetLands.
+    double stretch_tolerance = 0.05;
+    /// The same above which the substep is taken in parts at once. Source: moves that would take more energy than there
+    /// is are no place to solve about. Test: Settings.AreNoticed.
+    double max_stretch = 1;
     /// Maximum iterations of a solve. Test: Settings.AreNoticed.
     int max_gradient_iterations = 200;
-    /// Maximum parts of a substep for fast layers. Test: Settings.AreNoticed.
+    /// Maximum parts of a substep, for fast layers and for stretch that solves do not foresee. Test:
+    /// Settings.AreNoticed.
     int max_parts = 16;
     /// Maximum relative displacement of layers in a part of a substep, over an edge's mean length. Source: beyond half
     /// an edge a node comes to a triangle that was no candidate. Test: Settings.AreNoticed.
@@ -34,6 +42,8 @@ inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"max_solves", &ClothSettings::max_solves, 1, 1000},
     Setting{"max_meeting_solves", &ClothSettings::max_meeting_solves, 0, 1000},
     Setting{"gradient_tolerance", &ClothSettings::gradient_tolerance, 1e-12, 1e3},
+    Setting{"stretch_tolerance", &ClothSettings::stretch_tolerance, 0, 1e9},
+    Setting{"max_stretch", &ClothSettings::max_stretch, 0, 1e9},
     Setting{"max_gradient_iterations", &ClothSettings::max_gradient_iterations, 1, 1e6},
     Setting{"max_parts", &ClothSettings::max_parts, 1, 64},
     Setting{"max_layer_travel", &ClothSettings::max_layer_travel, 1e-3, 1e3},

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "physics/deformable/contact/free_motion.h"
 
@@ -124,9 +125,45 @@ void ClothSheet::make_pattern(const ScalarRows& bending) {
     }
 }
 
-void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
+// `moves`: of the nodes, or none.
+ClothSheet::Images ClothSheet::images_of(const ClothTriangle& triangle, std::span<const Vec3> moves) const {
+    Images images;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t node = triangle.node[k];
+        const Vec3 x = moves.empty() ? nodes_.position[node] : nodes_.position[node] + moves[node];
+        images.f += triangle.warp[k] * x;
+        images.g += triangle.weft[k] * x;
+    }
+    return images;
+}
+
+// Of stretch and shear per area, J/m².
+double ClothSheet::energy_of(const Images& images) const {
+    const double warp = length(images.f) - 1, weft = length(images.g) - 1, angle = dot(images.f, images.g);
+    return (cloth_.stretch_stiffness * (warp * warp + weft * weft) + cloth_.shear_stiffness * angle * angle) / 2;
+}
+
+// Derivatives of that energy by f and g, N/m.
+ClothSheet::Images ClothSheet::stress_of(const Images& images) const {
+    const auto stretched = [&](Vec3 image, Vec3 along) {
+        return cloth_.stretch_stiffness * (length(image) - 1) * along;
+    };
+    const Vec3 f_along = normalized(images.f, {1, 0, 0}), g_along = normalized(images.g, any_perpendicular(f_along));
+    const double shear = cloth_.shear_stiffness * dot(images.f, images.g);
+    return {stretched(images.f, f_along) + shear * images.g, stretched(images.g, g_along) + shear * images.f};
+}
+
+// By the equations, without damping.
+ClothSheet::Images ClothSheet::stress_change(const Strain& strain, const Images& change) const {
+    const double shear = cloth_.shear_stiffness * (dot(strain.g, change.f) + dot(strain.f, change.g));
+    return {strain.warp * dot(strain.f_displacement, change.f) * strain.f_displacement + shear * strain.g +
+                strain.across_ff * change.f + strain.across_fg * change.g,
+            strain.weft * dot(strain.g_displacement, change.g) * strain.g_displacement + shear * strain.f +
+                strain.across_fg * change.f + strain.across_gg * change.g};
+}
+
+void ClothSheet::find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
     constexpr double min_stretch = 1e-9;  // length over that at rest: keeps its inverse finite
-    const double damped = 1 + cloth_.rayleigh_damping / substep.h;
     strains_.resize(triangles_.size());
     air_.resize(triangles_.size());
     winds_.resize(triangles_.size());
@@ -134,31 +171,29 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
         for (std::size_t t = range.first; t < range.last; ++t) {
             const ClothTriangle& triangle = triangles_[t];
             Strain& strain = strains_[t];
-            strain.f = strain.g = {};
-            Vec3 velocity;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3 x = nodes_.position[triangle.node[k]];
-                strain.f += triangle.warp[k] * x;
-                strain.g += triangle.weft[k] * x;
-                velocity += nodes_.mean_velocity[triangle.node[k]] / 3;
-            }
+            const Images start = images_of(triangle, {}), images = moves.empty() ? start : images_of(triangle, moves);
+            strain.f = images.f;
+            strain.g = images.g;
             const double f = length(strain.f), g = length(strain.g), angle = dot(strain.f, strain.g);
             strain.f_displacement = normalized(strain.f, {1, 0, 0});
             strain.g_displacement = normalized(strain.g, any_perpendicular(strain.f_displacement));
             const double k = cloth_.stretch_stiffness, s = cloth_.shear_stiffness;
-            strain.f_stress = k * (f - 1) * strain.f_displacement + s * angle * strain.g;
-            strain.g_stress = k * (g - 1) * strain.g_displacement + s * angle * strain.f;
             // The second derivative of ½ (|f| - 1)² is f̂ f̂ᵀ / |f| + (1 - 1/|f|) 1.
             strain.across_ff = f > 0 ? k * (1 - 1 / f) : -k;
             strain.across_gg = g > 0 ? k * (1 - 1 / g) : -k;
             strain.across_fg = s * angle;
-            strain.warp = k * (std::min(1.0, 1 / std::max(f, min_stretch)) + damped - 1);
-            strain.weft = k * (std::min(1.0, 1 / std::max(g, min_stretch)) + damped - 1);
-            strain.shear = s * damped;
+            strain.warp = k * std::min(1.0, 1 / std::max(f, min_stretch));
+            strain.weft = k * std::min(1.0, 1 / std::max(g, min_stretch));
             make_positive(strain.across_ff, strain.across_fg, strain.across_gg);
+            const Images stress = stress_of(images),
+                         change = stress_change(strain, {start.f - images.f, start.g - images.g});
+            strain.f_stress = stress.f + change.f;
+            strain.g_stress = stress.g + change.g;
 
             // Drag by the air that blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
-            const Vec3 normal = normalized(cross(strain.f, strain.g));
+            Vec3 velocity;
+            for (const std::uint32_t node : triangle.node) velocity += nodes_.mean_velocity[node] / 3;
+            const Vec3 normal = normalized(cross(start.f, start.g));
             winds_[t] = substep.wind.at((nodes_.position[triangle.node[0]] + nodes_.position[triangle.node[1]] +
                                          nodes_.position[triangle.node[2]]) /
                                         3);
@@ -171,7 +206,8 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
 
 // `near`: to work with.
 void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near) {
-    const double h = substep.h, damped = 1 + cloth_.rayleigh_damping / h;
+    const double h = substep.h, damping = cloth_.rayleigh_damping / h, damped = 1 + damping;
+    const double damping_stretch = damping * cloth_.stretch_stiffness, shear = damped * cloth_.shear_stiffness;  // N/m
     const double inertia = nodes_.mass[i] / (h * h);
     Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
     Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
@@ -202,9 +238,9 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
         const Vec3 angle = b * strain.g + d * strain.f;  // derivative of f·g
         for (std::size_t other = 0; other < 3; ++other) {
             const double b2 = triangle.warp[other], d2 = triangle.weft[other];
-            Mat3 block = (area * strain.warp * b * b2) * symmetric_outer(strain.f_displacement) +
-                         (area * strain.weft * d * d2) * symmetric_outer(strain.g_displacement) +
-                         (area * strain.shear) * outer(angle, b2 * strain.g + d2 * strain.f);
+            Mat3 block = (area * (strain.warp + damping_stretch) * b * b2) * symmetric_outer(strain.f_displacement) +
+                         (area * (strain.weft + damping_stretch) * d * d2) * symmetric_outer(strain.g_displacement) +
+                         (area * shear) * outer(angle, b2 * strain.g + d2 * strain.f);
             const double across =
                 area * (strain.across_ff * b * b2 + strain.across_gg * d * d2 + strain.across_fg * (b * d2 + d * b2));
             block += across * Mat3::identity();
@@ -267,12 +303,32 @@ std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskP
     return layers_->near(nodes_, apart() + length(substep.gravity) * h * h, moves_, substep.settings.cloth, workers);
 }
 
+void ClothSheet::linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
+    find_strains(substep, moves, workers);
+    fill_rows(substep, workers);
+}
+
+double ClothSheet::unforeseen_energy(std::span<const Vec3> moves, TaskPool& workers) {
+    unforeseen_.resize(triangles_.size());
+    parallel_for(workers, triangles_.size(), triangles_.size() >= 1000, [&](int, IndexRange range) {
+        for (std::size_t t = range.first; t < range.last; ++t) {
+            const Strain& strain = strains_[t];
+            const Images from{strain.f, strain.g}, to = images_of(triangles_[t], moves);
+            const Images change{to.f - from.f, to.g - from.g};
+            const Images stress = stress_of(from), added = stress_change(strain, change);
+            const double foreseen =
+                energy_of(from) + dot(stress.f + added.f / 2, change.f) + dot(stress.g + added.g / 2, change.g);
+            unforeseen_[t] = triangles_[t].area * std::max(0.0, energy_of(to) - foreseen);
+        }
+    });
+    return std::accumulate(unforeseen_.begin(), unforeseen_.end(), 0.0);
+}
+
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
                        std::span<const TouchedBody> bodies, TaskPool& workers) {
     springs_.tolerance = substep.settings.thin_contact.change_tolerance;
-    find_strains(substep, workers);
-    fill_rows(substep, workers);
+    linearize(substep, {}, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
@@ -295,16 +351,7 @@ void ClothSheet::move_nodes(std::span<const Vec3> moves, double h) {
 
 double ClothSheet::elastic_energy() const {
     double energy = 0;
-    for (const ClothTriangle& triangle : triangles_) {
-        Vec3 f, g;
-        for (std::size_t k = 0; k < 3; ++k) {
-            f += triangle.warp[k] * nodes_.position[triangle.node[k]];
-            g += triangle.weft[k] * nodes_.position[triangle.node[k]];
-        }
-        const double warp = length(f) - 1, weft = length(g) - 1, angle = dot(f, g);
-        energy += triangle.area / 2 *
-                  (cloth_.stretch_stiffness * (warp * warp + weft * weft) + cloth_.shear_stiffness * angle * angle);
-    }
+    for (const ClothTriangle& triangle : triangles_) energy += triangle.area * energy_of(images_of(triangle, {}));
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k)
             energy += bending_.value[k] / 2 * dot(nodes_.position[i], nodes_.position[bending_.column[k]]);

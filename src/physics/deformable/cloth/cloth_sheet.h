@@ -14,26 +14,31 @@
 
 namespace embody::physics::deformable {
 
-/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with one linear
-/// solve for the elastic forces a substep (docs/physics/cloth.md).
+/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with linear
+/// solves for the elastic forces (docs/physics/cloth.md).
 class ClothSheet {
 public:
     /// `definition` is valid and its matter is cloth.
     explicit ClothSheet(const DeformableDefinition& definition);
 
     // A substep: sheets and ropes that touch each other are solved together (docs/physics/cloth.md).
-    /// Finds system() and touch() for the part. `attachment_bodies`: where the attachments hold in `bodies`.
+    /// Finds system() and touch() for the part, about its place at the part's start. `attachment_bodies`: where the
+    /// attachments hold in `bodies`.
     void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
-    /// The sheet's equations for the solve, valid until the next begin().
+    /// Finds system() about these moves (m), as in Newton's method. None: the place at the part's start.
+    void linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
+    /// What stretch and shear take more for these moves than system() says, J: none of what they take less.
+    [[nodiscard]] double unforeseen_energy(std::span<const Vec3> moves, TaskPool& workers);
+    /// The sheet's equations for the solve, those of the last linearize(), valid until the next begin().
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] ClothLayers& layers() { return *layers_; }
     [[nodiscard]] const ClothLayers& layers() const { return *layers_; }
     /// Where it may touch itself in the part, by the motion of its nodes.
     [[nodiscard]] std::vector<ThinCandidate> near_layers(const Substep& substep, TaskPool& workers);
-    /// Stiffness of each node alone, N/m, since begin().
+    /// Stiffness of each node alone by these equations, N/m.
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Ends it with these moves (m), which touch() was solved with, and changes them where the solve could not know.
     /// Pushes the bodies.
@@ -72,17 +77,25 @@ private:
         std::uint32_t triangle = 0, corner = 0;
         std::array<std::uint32_t, 3> element{};  // of the row's near elements; own: the diagonal
     };
-    // Of a triangle, this substep: F's columns and the derivatives of the energy by them.
+    // Of a triangle where the equations are made: F's columns and the derivatives of the energy per area by them.
     struct Strain {
-        Vec3 f, g;                             // images of the unit steps along warp and weft
-        Vec3 f_displacement, g_displacement;   // their directions
-        Vec3 f_stress, g_stress;               // derivatives of the energy per area by f and g, N/m
-        double warp = 0, weft = 0, shear = 0;  // stiffness along f_displacement, g_displacement, of the angle, N/m
+        Vec3 f, g;                                           // images of the unit steps along warp and weft
+        Vec3 f_displacement, g_displacement;                 // their directions
+        Vec3 f_stress, g_stress;                             // by the equations at the part's start, N/m
+        double warp = 0, weft = 0;                           // stiffness along f_displacement, g_displacement, N/m
         double across_ff = 0, across_fg = 0, across_gg = 0;  // stiffness by stress, N/m
     };
+    // Images of the unit steps along warp and weft.
+    struct Images {
+        Vec3 f, g;
+    };
+    [[nodiscard]] Images images_of(const ClothTriangle& triangle, std::span<const Vec3> moves) const;
+    [[nodiscard]] Images stress_of(const Images& images) const;
+    [[nodiscard]] Images stress_change(const Strain& strain, const Images& change) const;
+    [[nodiscard]] double energy_of(const Images& images) const;
 
     void make_pattern(const ScalarRows& bending);
-    void find_strains(const Substep& substep, TaskPool& workers);
+    void find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
     // Distance of layers: as if a body of no thickness lay between them.
@@ -104,7 +117,7 @@ private:
     // Of the substep.
     std::vector<Strain> strains_;
     std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
-    std::vector<double> node_stiffness_;
+    std::vector<double> node_stiffness_, unforeseen_;
     bool is_frozen_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace embody::physics::deformable {
 
@@ -249,17 +250,24 @@ void TouchSprings::bring_back(const Substep& substep, TouchSpring& spring) const
     spring.returned = std::min(1.0, spring.overlap / (settings.max_wrong_side_radii * radius)) * returned;
 }
 
-// As between sheets (pair_springs.cpp): by its inertia and by that of the load on it. A body's inertia would need
-// stiffer springs than these: with memory their oscillations would grow, so they have no memory.
-void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) {
+// As between sheets (pair_springs.cpp): by its inertia and by that of the load on it. That follows the force, so both
+// would grow exponentially where something else holds the point: none remembers more than max_load_'s weight. A
+// body's inertia would need stiffer springs than these: with memory their oscillations would grow, so they have no
+// memory.
+void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) const {
     const ThinContactSettings& settings = substep.settings.thin_contact;
     if (is_with_body) spring.pull = spring.hold = {};
-    const double g = length(substep.gravity), squared = substep.h * substep.h;
-    const double carried = g > 0 ? length(spring.pull) / g : 0;
+    const double g = std::max(length(substep.gravity), settings.min_gravity), squared = substep.h * substep.h;
+    const double pull = length(spring.pull), carried = std::min(pull / g, max_load_);  // kg
+    if (pull > g * carried) spring.pull *= g * carried / pull;
     spring.stiffness =
         std::max(settings.stiffness_factor * spring.inertia, settings.load_stiffness_factor * carried / squared);
     spring.inertia = 1 / (compliance * squared);
-    spring.gap = std::max(spring.gap, -settings.recovery_speed * substep.h);
+    const double max_taken = settings.recovery_speed * substep.h;
+    if (is_with_body)
+        spring.gap = std::max(spring.gap, -max_taken);
+    else
+        spring.gap += spring.overlap - std::min(settings.recovery_fraction * spring.overlap, max_taken);
 }
 
 // Two faces of one body, or of two that do not move, may leave a node less room than it needs, so that neither can give
@@ -323,6 +331,11 @@ TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Subste
 void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                          const Substep& substep, std::span<const double> node_stiffness) {
     const ThinContactSettings& settings = substep.settings.thin_contact;
+    max_load_ = std::accumulate(nodes.mass.begin(), nodes.mass.end(), 0.0);
+    std::vector<bool> is_near(bodies.size(), false);
+    for (const NodeContact& contact : contacts) is_near[contact.body] = true;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        max_load_ += is_near[b] && bodies[b].inverse_mass > 0 ? 1 / bodies[b].inverse_mass : 0;
     places_.clear();
     for (const TouchedBody& body : bodies) places_.push_back(place_of(body, substep));
     springs_.clear();

@@ -199,7 +199,7 @@ private:
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
     void bring_back(const Substep& substep, TouchSpring& spring) const;
     void forget_contradictions(std::span<const TouchedBody> bodies, const Substep& substep, std::size_t node_count);
-    static void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring);
+    void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) const;
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     // False where the contact is new.
     bool recall(const TouchedBody& body, const ThinContactSettings& settings, TouchSpring& spring) const;
@@ -208,6 +208,7 @@ private:
 
     std::vector<TouchSpring> springs_;
     std::vector<Memory> memory_;  // by feature
+    double max_load_ = 0;         // mass of the nodes and of the bodies beside them that move, kg
     std::vector<Place> places_;   // of the bodies, at the substep's end
     std::vector<Vec3> leads_;     // of the springs, by the solve's moves
 };

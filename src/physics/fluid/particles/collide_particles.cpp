@@ -198,25 +198,30 @@ bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3
     normal = is_behind ? -near.normal : near.normal;
     to += normal * (gap - distance);
     // At a seam of two pieces that led from one into the other.
-    if (!probe.is_surface() && probe.nearest(to).distance < 0 && probe.nearest(from).distance >= 0) to = from;
+    if (!probe.is_surface() && probe.nearest(from).distance >= 0 && probe.nearest(to).distance < 0) to = from;
     return true;
 }
 
-// By the true shapes; a moving one is taken in the middle of its path.
+// By the true shapes; a moving one is taken in the middle of its path. The probes are exact in what was looked at
+// alone, which also depends on the particles before: one that was in a solid may be pushed beyond it, and is looked
+// around again there. One that comes from outside is at most as deep in a solid as its path is long.
 void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
-    Bounds swept;
-    swept.add(from);
-    swept.add(to);
-    look_around(swept);
+    const double gap = settings_.wall_gap * grid_.cell_size();
     Vec3 normal;
     for (int iteration = 0; iteration < settings_.max_sweeps; ++iteration) {
+        Bounds reached;
+        reached.add(from);
+        reached = enlarged(reached, 2 * length(to - from) + settings_.max_slides * gap);
+        look_around(reached);
         bool any = false;
         for (const std::size_t i : near_fixed_) {
+            if (!contains(reached, to)) break;
             if (!bar(fixed_[i], from, to, normal)) continue;
             any = true;
             stop_at(particle, {normal, {}});
         }
         for (const std::size_t i : near_moving_) {
+            if (!contains(reached, to)) break;
             const Mover& mover = moving_[i];
             const MovingObstacle& moving = *mover.obstacle;
             const Pose before = mover.at(when.first), after = mover.at(when.last);

@@ -18,8 +18,9 @@ void Mixture::assign(FluidIds ids, FluidProperties liquid) {
     // The ids after the last one keep their liquid.
     const std::uint16_t after = liquid_of(ids.last);
     first_ids_.erase(first_ids_.lower_bound(ids.first), first_ids_.upper_bound(ids.last));
-    first_ids_[ids.first] = index;
-    first_ids_[ids.last] = after;
+    // A run that goes on stays one.
+    if (ids.first == 0 || liquid_of(ids.first) != index) first_ids_[ids.first] = index;
+    if (after != index) first_ids_[ids.last] = after;
 }
 
 void Mixture::keep_liquids_of(const std::vector<FluidParticle>& particles) {

@@ -57,7 +57,7 @@ private:
     template <class Found, class Find>
     [[nodiscard]] std::vector<Found> gather(std::size_t count, Find find) const;
     void gather_triangles();
-    void find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& is_outwards);
+    void find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& pokes);
 
     const TouchedBody& body_;
     std::uint32_t index_;
@@ -153,9 +153,9 @@ void SheetSearch::gather_triangles() {
     });
 }
 
-// `inside`: a point of the body well below its surface; `is_outwards(n)`: whether what is around the point lies below
-// it as seen along the unit vector n.
-void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& is_outwards) {
+// `inside`: a point of the body well below its surface; `pokes(n, p)`: whether the body stands out at the point as seen
+// along the unit vector n and, where the point is beyond the triangle, is there at p on the triangle below it.
+void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& pokes) {
     std::vector<std::uint32_t> near;
     grid_.visit(enlarged(Bounds{point, point}, radius), [&](std::uint32_t t) { near.push_back(t); });
     std::ranges::sort(near);
@@ -166,13 +166,28 @@ void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint3
         const Vec3 a = x[triangle[0]], b = x[triangle[1]], c = x[triangle[2]];
         const auto weight = nearest_weights(point, a, b, c);
         if (std::ranges::min(weight) < settings_.sheet_end_fraction) continue;
-        const Vec3 from = radius > 0 ? weight[0] * a + weight[1] * b + weight[2] * c : point;
+        const Vec3 place = weight[0] * a + weight[1] * b + weight[2] * c;
         Vec3 normal = normalized(cross(b - a, c - a));
-        if (dot(normal, from - inside) < 0) normal = -normal;
-        if (!is_outwards(normal)) continue;
+        if (dot(normal, (radius > 0 ? place : point) - inside) < 0) normal = -normal;
+        if (!pokes(normal, place)) continue;
         const Vec3 anchor = point + radius * normal - body_.start_center;
         thin_.sheet_contacts.push_back({triangle, weight, 3, {no_node, number}, {0, index_, anchor, normal, {}}});
     }
+}
+
+// Whether the piece, at its corner v, pokes into a sheet of that normal in its own frame: all that is around the corner
+// lies below it, and where the sheet is below the corner, the piece is in it at `place`: else the sheet is on the
+// piece's other side, or beside it.
+bool pokes_at(const Polytope& polytope, std::uint32_t v, Vec3 normal, Vec3 place, double corner_cosine) {
+    const Vec3 corner = polytope.vertices[v];
+    return std::ranges::all_of(polytope.neighbours(v),
+                               [&](std::uint32_t other) {
+                                   const Vec3 edge = polytope.vertices[other] - corner;
+                                   return dot(edge, normal) <= corner_cosine * length(edge);
+                               }) &&
+           (dot(normal, corner - place) <= 0 || std::ranges::all_of(polytope.faces, [&](const Polytope::Face& face) {
+                return dot(face.normal, place) <= face.offset;
+            }));
 }
 
 void SheetSearch::find_corners() {
@@ -189,20 +204,17 @@ void SheetSearch::find_corners() {
         if (convex.kind == ConvexKind::sphere) {
             // Larger balls touch edges first.
             if (convex.radius < thin_.record->cloth()->edge_length())
-                find_corner(piece.position, piece.position, convex.radius, p * max_corners, [](Vec3) { return true; });
+                find_corner(piece.position, piece.position, convex.radius, p * max_corners,
+                            [](Vec3, Vec3) { return true; });
             continue;
         }
         const Polytope& polytope = convex.polytope;
         for (std::uint32_t v = 0; v < polytope.vertices.size(); ++v) {
-            const auto is_outwards = [&](Vec3 normal) {
-                const Vec3 n = piece.direction_to_local(normal);
-                return std::ranges::all_of(polytope.neighbours(v), [&](std::uint32_t other) {
-                    const Vec3 displacement = polytope.vertices[other] - polytope.vertices[v];
-                    return dot(displacement, n) <= settings_.corner_cosine * length(displacement);
-                });
-            };
             find_corner(piece.to_frame(polytope.vertices[v]), interior_point(piece), 0, p * max_corners + v,
-                        is_outwards);
+                        [&](Vec3 normal, Vec3 at) {
+                            return pokes_at(polytope, v, piece.direction_to_local(normal), piece.to_local(at),
+                                            settings_.corner_cosine);
+                        });
         }
     }
 }

@@ -245,6 +245,46 @@ void ThinGroupPart::settle_bodies(std::span<const BodyInertia> inertias) {
     }
 }
 
+// The energy that the solved moves stretch a sheet by beyond what its linear equations say, over that of the motion of
+// the sheet and of the bodies on it: where a corner stops some of the nodes, the others fly on across the sheet, which
+// stretches it to second order only.
+double ThinGroupPart::unforeseen_stretch(const Member& member, std::span<const TouchedBody> bodies) {
+    ClothSheet& sheet = *member.record().cloth();
+    const double stretch = sheet.unforeseen_energy(part(moves_, member), world_.workers);
+    if (!(stretch > 0)) return 0;
+    const double gravity = std::max(length(member.substep.gravity), member.substep.settings.thin_contact.min_gravity);
+    const double fall = h_ * h_ * gravity * gravity;  // m²/s²
+    const Nodes& nodes = sheet.nodes();
+    double motion = 0;  // J
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        motion += nodes.mass[i] / 2 * (length_squared(nodes.mean_velocity[i]) + fall);
+    std::vector<bool> is_counted(bodies.size(), false);
+    for (const TouchSpring& spring : member.touch.springs()) {
+        if (!spring.acts || spring.body >= bodies.size() || is_counted[spring.body]) continue;
+        is_counted[spring.body] = true;
+        const TouchedBody& body = bodies[spring.body];
+        if (body.inverse_mass > 0)
+            motion += (length_squared(body.path_velocity + body.velocity) + fall) / (2 * body.inverse_mass);
+    }
+    return stretch / motion;
+}
+
+// Makes the equations of sheets anew about the solved moves where these were not foreseen, or says that the substep
+// must be taken in parts: where they stretch a sheet by more than its motion, or the last solve (`is_last`) still does.
+ThinGroupPart::Stretch ThinGroupPart::linearize_again(bool is_last, bool may_cut, std::span<const TouchedBody> bodies) {
+    const ClothSettings& settings = world_.settings.solver.deformable.cloth;
+    Stretch found = Stretch::foreseen;
+    for (std::size_t m = 0; m < sheets_; ++m) {
+        const double stretch = unforeseen_stretch(members_[m], bodies);
+        if (stretch <= settings.stretch_tolerance) continue;
+        if (may_cut && (is_last || stretch > settings.max_stretch)) return Stretch::too_far;
+        if (is_last) continue;
+        members_[m].record().cloth()->linearize(members_[m].substep, part(moves_, members_[m]), world_.workers);
+        found = Stretch::unforeseen;
+    }
+    return found;
+}
+
 // Contacts for one more solve of what would pass through each other by the solved moves.
 void ThinGroupPart::add_contacts(std::span<const ThinMeeting> meetings) {
     pairs_.add(seen_, met_, meetings, moves_);
@@ -326,7 +366,7 @@ bool ThinGroupPart::are_finite() const {
                                [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
-// Ropes about their last moves, as in Newton's method.
+// Ropes about their last moves, as in Newton's method, and sheets where these were not foreseen.
 ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies, bool is_shortest) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
     const double move_tolerance = settings.rope.move_tolerance_together;  // of a segment's length
@@ -352,7 +392,13 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
         if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
         const bool is_last_solve = solves >= max_solves;
-        const bool has_changed = choose_again(is_last_solve) || travel >= move_tolerance;
+        bool has_changed = choose_again(is_last_solve) || travel >= move_tolerance;
+        const Stretch stretch = linearize_again(is_last_solve, !is_shortest, bodies);
+        if (stretch == Stretch::too_far) return Outcome::too_fast;
+        if (stretch == Stretch::unforeseen) {
+            has_changed = true;
+            least = std::numeric_limits<double>::infinity();  // that of other equations
+        }
         if (has_changed && has_ropes()) {
             if (const double left = energy(sheets, inertias, energy_pressed); left < least) {
                 least = left;

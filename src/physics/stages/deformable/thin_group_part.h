@@ -51,6 +51,9 @@ private:
                                 SpringEnergy spring_energy);
     double go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
     bool choose_again(bool is_last);
+    enum class Stretch : std::uint8_t { foreseen, unforeseen, too_far };
+    Stretch linearize_again(bool is_last, bool may_cut, std::span<const TouchedBody> bodies);
+    [[nodiscard]] double unforeseen_stretch(const Member& member, std::span<const TouchedBody> bodies);
     void settle_bodies(std::span<const BodyInertia> inertias);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;

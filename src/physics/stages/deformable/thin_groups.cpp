@@ -80,25 +80,27 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
-// In parts where things meet fast: half as long until they can be solved, then longer again.
+// In parts where things meet fast or are stretched far: half as long until they can be solved, then longer again.
 void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                       double time, std::vector<TouchedBody>& bodies) {
-    const double shortest = h / world.settings.solver.deformable.cloth.max_parts;
-    double done = 0, part = h;
-    while (done < h) {
+    // Counted in the shortest: summed up in seconds, their rounding would be left over as one more part.
+    const int count = world.settings.solver.deformable.cloth.max_parts;
+    int done = 0, size = count;
+    while (done < count) {
+        const double part = h * size / count;
         const std::vector<TouchedBody> before = bodies;
         for (TouchedBody& body : bodies) {
             if (done > 0)
                 body.enter_part(part);
-            else if (part < h)
+            else if (size < count)
                 body.return_to_part(h, part);
         }
-        if (ThinGroupPart(world, group, thin, part, time + done).advance(bodies, part / 2 < shortest)) {
-            done += part;
-            part = std::min(2 * part, h - done);
+        if (ThinGroupPart(world, group, thin, part, time + h * done / count).advance(bodies, size == 1)) {
+            done += size;
+            size = std::min(2 * size, count - done);
         } else {
             bodies = before;
-            part /= 2;
+            size /= 2;
         }
     }
 }

@@ -69,7 +69,15 @@ Vec3 next_in_disc(std::uint64_t& index, Vec3 across, Vec3 aside) {
     }
 }
 
+// None where the source has no ids of its own.
+std::optional<std::uint32_t> next_kept_id(const FluidRecord& fluid, const FluidSource& source) {
+    if (source.ids.first == source.ids.last) return std::nullopt;
+    const auto used = fluid.next_kept_ids.find(source.ids.first);
+    return used == fluid.next_kept_ids.end() ? source.ids.first : used->second;
+}
+
 void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& source) {
+    record.waits = false;
     FluidRecord* fluid = world.fluids.records.find(source.fluid);
     const std::optional<PortFrame> frame = source.is_open ? frame_of(world, source.body) : std::nullopt;
     if (!frame || fluid == nullptr || fluid->is_frozen || source.rate == 0) return;
@@ -81,10 +89,13 @@ void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& 
     const double area = std::numbers::pi * source.radius * source.radius;
     const double speed = source.speed > 0 ? source.speed : source.rate / area;
     std::vector<FluidParticle> poured;
+    const std::optional<std::uint32_t> first = next_kept_id(*fluid, source);
+    const std::size_t ids_left = first ? source.ids.last - *first : max_fluid_particles;
     for (; record.owed >= volume; record.owed -= volume) {
-        if (fluid->positions.size() + poured.size() >= source.max_particles) {
+        if (fluid->positions.size() + poured.size() >= source.max_particles || poured.size() >= ids_left) {
             // What waits does not come at once when there is room again.
             record.owed = std::fmod(record.owed, volume);
+            record.waits = true;
             world.report.limits |= static_cast<std::uint32_t>(StepLimit::fluid_source_waits);
             break;
         }
@@ -102,7 +113,13 @@ void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& 
     }
     if (poured.empty()) return;
     record.passed += poured.size();
-    fluid->solver->add_particles(std::move(poured), fluid->solver->origin());
+    const FluidIds ids = fluid->solver->add_particles(std::move(poured), fluid->solver->origin(), first);
+    if (first) fluid->next_kept_ids[source.ids.first] = ids.last;
+    if (source.matter)
+        fluid->solver->set_matter(ids, {.density = source.matter->density,
+                                        .viscosity = source.matter->viscosity,
+                                        .yield_stress = source.matter->yield_stress,
+                                        .surface_tension = source.matter->surface_tension});
     wake(world, *fluid);
 }
 

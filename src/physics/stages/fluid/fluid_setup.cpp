@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "foundation/task_pool.h"
@@ -157,11 +158,18 @@ void read_particles(FluidRecord& record, TaskPool& workers) {
     record.bounds.add(origin + Vec3{reach.upper[0], reach.upper[1], reach.upper[2]});
 }
 
+Result<void> check_room(const FluidRecord& fluid, std::size_t count) {
+    if (fluid.positions.size() + count > max_fluid_particles) return too_many();
+    if (count > std::numeric_limits<std::uint32_t>::max() - fluid.solver->next_id())
+        return Error{"ids", "of this fluid are used up", "destroy it and create another one"};
+    return {};
+}
+
 Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, std::span<const Vec3> places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!is_finite(places[i])) return Error{"places[" + std::to_string(i) + "]", "must be finite"};
     }
-    if (fluid.positions.size() + places.size() > max_fluid_particles) return too_many();
+    if (Result<void> room = check_room(fluid, places.size()); !room) return room.error();
     std::vector<Vec3> free(places.begin(), places.end());
     leave_out_obstacles(world, fluid.definition.cell_size, free);
     if (free.empty()) return Error{"places", "hold no particle", "place the liquid outside of obstacles"};
@@ -170,6 +178,20 @@ Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, 
     for (const Vec3 p : free) positions.push_back(to_vec3f(p - fluid.solver->origin()));
     const FluidIds ids = fluid.solver->add_particles(positions);
     read_particles(fluid, world.workers);
+    return ids;
+}
+
+FluidIds add_drops(FluidRecord& fluid, std::span<const FluidDrop> drops, TaskPool& workers) {
+    std::vector<FluidParticle> particles(drops.size());
+    for (std::size_t i = 0; i < drops.size(); ++i) {
+        const Vec3 at = drops[i].position - fluid.solver->origin();
+        for (int axis = 0; axis < 3; ++axis) {
+            particles[i].position[axis] = static_cast<float>(at[axis]);
+            particles[i].velocity[axis] = static_cast<float>(drops[i].velocity[axis]);
+        }
+    }
+    const FluidIds ids = fluid.solver->add_particles(std::move(particles), fluid.solver->origin());
+    read_particles(fluid, workers);
     return ids;
 }
 
@@ -185,13 +207,14 @@ Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinit
     if (filling.places.size() > max_fluid_particles) return too_many();
     const double particle_volume =
         filling.volume / static_cast<double>(std::max<std::size_t>(filling.places.size(), 1));
-    leave_out_obstacles(world, definition.cell_size, filling.places);
+    if (!definition.starts_empty) leave_out_obstacles(world, definition.cell_size, filling.places);
     if (filling.places.empty()) {
         return Error{"boxes", "hold no particle",
                      "place the liquid outside of obstacles, in regions larger than cell_size / 2"};
     }
 
     const Vec3 origin = origin_amid(filling.places);
+    if (definition.starts_empty) filling.places.clear();
     std::vector<Vec3f> positions;
     positions.reserve(filling.places.size());
     for (const Vec3 p : filling.places) positions.push_back(to_vec3f(p - origin));

@@ -13,6 +13,10 @@ namespace embody::physics::stages {
 Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinition& definition);
 /// More particles for it, at rest, where no obstacle is. Fails where there are none or too many.
 Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, std::span<const Vec3> places);
+/// Particles exactly there, also where obstacles are.
+FluidIds add_drops(FluidRecord& fluid, std::span<const FluidDrop> drops, TaskPool& workers);
+/// Whether so many more particles, or ids, are allowed.
+Result<void> check_room(const FluidRecord& fluid, std::size_t count);
 /// A fluid of the same matter and particle size, without particles yet, around the places of these.
 FluidRecord fluid_around(const FluidRecord& other, FluidIds ids);
 /// Moves particles from one fluid to another, as they are; returns their ids there. Call read_particles for both

@@ -65,9 +65,9 @@ void check_value(FieldReader& reader, const KeptForm& kept) {
     if (kept.fingerprint.size() != fingerprint_length || !std::ranges::all_of(kept.fingerprint, is_digit))
         return reader.refuse("fingerprint", "must be 16 hexadecimal digits, 0 … 9 and a … f");
     const std::vector<double>& places = kept.places.values;
-    if (places.empty() || places.size() % 3 != 0)
-        return reader.refuse(
-            "places", "must be x, y and z of at least one point, got " + std::to_string(places.size()) + " numbers");
+    if ((places.empty() && kept.cell_size == 0) || places.size() % 3 != 0)
+        return reader.refuse("places", "must be x, y and z of each point, of a liquid none too, got " +
+                                           std::to_string(places.size()) + " numbers");
     if (std::ranges::any_of(places, [](double at) { return std::fabs(at) > max_kept_distance; }))
         return reader.refuse("places", "must be between -1e+06 and 1e+06 m");
     if (kept.plastic_strain.values.size() % numbers_per_strain != 0)

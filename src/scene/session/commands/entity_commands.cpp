@@ -48,6 +48,21 @@ bool is_surroundings(SessionState& state, const Entity& entity) {
            (categories.contains(model.value().category) || categories.contains(model.value().subcategory));
 }
 
+// A tap of a scene without a liquid brings water of its own, which starts empty below its mouth.
+std::optional<Entity> water_for(SessionState& state, const Entity& entity) {
+    if (entity.tap.litres_per_minute == 0 || entity.tap.liquid != 0) return std::nullopt;
+    const auto is_liquid = [&state](const Entity& other) { return state.definitions.attributes.is_liquid(other); };
+    if (std::ranges::any_of(state.document.entities, is_liquid)) return std::nullopt;
+    constexpr Vec3 half{0.25, 0.12, 0.25};  // m, 60 l: with the usual budget drops of 3 ml, 14 mm wide
+    Entity water;
+    water.name = state.lookup.names.free_name("Water");
+    water.geometry = physics::ShapeDefinition(physics::BoxShape{half});
+    water.attributes["kind"] = to_value(attributes::PhysicalKind::fluid);
+    water.starts_empty = true;
+    water.pose.position = transform_point(entity.pose, entity.tap.position) - Vec3{0, half.y, 0};
+    return water;
+}
+
 Result<json> add(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -82,7 +97,12 @@ Result<json> add(SessionState& state, const json& params) {
     Edit edit = state.start_edit("Add " + entity.name);
     edit.next_after = entity.index + 1;
     const EntityIndex index = entity.index;
+    std::optional<Entity> water = water_for(state, entity);
     edit.changes.emplace_back(EntityChange{std::nullopt, std::move(entity)});
+    if (water) {
+        water->index = edit.next_after++;
+        edit.changes.emplace_back(EntityChange{std::nullopt, std::move(*water)});
+    }
     if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
     return json{{"index", index}};
 }
@@ -202,6 +222,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
         // Pins between copied things lead to the copies, as between the originals.
         for (Pin& pin : copy.pins)
             if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
+        if (copy_of.contains(copy.tap.liquid)) copy.tap.liquid = copy_of.at(copy.tap.liquid);
         if (!copy.name.empty()) copy.name = names.free_name(copy.name);
         names.add(copy.name);
         copy.pose.position += *offset;
