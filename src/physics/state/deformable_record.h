@@ -25,7 +25,8 @@ struct SurfacePush {
 struct SolidBounce {
     std::uint64_t partner = 0;  ///< as of SolidContact
     bool has_body = false;      ///< else the partner is a solid
-    Vec3 normal, place;         ///< from the partner to the solid; of the last substep
+    double pushes = 0;          ///< sum of the pushes of all substeps since then, N
+    Vec3 normals, arms;         ///< of these, times the pushes: from the partner to the solid; from the solid's centre
     double approach = 0;        ///< speed at which it came, m/s; 0: too slow to bounce
     double speed = 0;           ///< away from the partner at the end of the last substep, m/s
     bool has_come_back = false;

@@ -116,7 +116,9 @@ private:
     [[nodiscard]] bool is_too_much(std::optional<double> surplus) const;
     [[nodiscard]] bool is_let_alone() const;
     [[nodiscard]] double kinetic_energy() const;
+    [[nodiscard]] double metric_weight() const;
     [[nodiscard]] double kept_energy(const SolidElements::SubstepEnergy& energy) const;
+    [[nodiscard]] double elastic_energy() const;
     [[nodiscard]] double gas_energy(std::span<const Vec3> positions) const;
 
     SolidElements elements_;

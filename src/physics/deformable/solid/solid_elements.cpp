@@ -132,12 +132,19 @@ Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) 
 
 // Elastic stress of the strains of this and the last substeps, and that of β/h times the change of the strain.
 Mat3 SolidElements::stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
-                           const Past& past, std::size_t index, double damping_rate) {
+                           const Past& past, std::size_t index) const {
     const Mat3 r = to_matrix(rotation);
     const Mat3 strain = symmetric_part(transpose(r) * deformation) - Mat3::identity() - plastic;
-    Mat3 felt = (end_weight + damping_rate) * strain + (start_weights[0] - damping_rate) * past[0][index];
-    for (std::size_t k = 1; k < start_weights.size(); ++k) felt += start_weights[k] * past[k][index];
+    Mat3 felt = (end_weight() + damping_rate_) * strain - damping_rate_ * past[0][index];
+    if (is_second_order_) felt += (1.0 / 27) * (12 * past[0][index] + 6 * past[1][index] + past[2][index]);
     return turned_stress(r, felt, moduli.mu, moduli.lambda);
+}
+
+// Damping of β >= h would hide what the second order gains.
+void SolidElements::begin_substep(double h) {
+    is_substep_new_ = true;
+    is_second_order_ = damping_ < h;
+    damping_rate_ = damping_ / h;
 }
 
 // The strain at the start of a substep, by the rotation there; `rotation` is the one at its end. The square of small
@@ -159,11 +166,9 @@ void SolidElements::shift(Past& past) {
     past[1].swap(past[0]);
 }
 
-void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h,
-                              std::span<Vec3> force) {
-    damping_rate_ = damping_ / h;
+void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, std::span<Vec3> force) {
     const bool is_first = std::exchange(is_substep_new_, false);
-    if (is_first) {
+    if (is_first && is_second_order_) {
         shift(past_);
         shift(node_past_);
     }
@@ -181,6 +186,7 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         if (is_first) {
             start_deformation_[e] = gradient(e, start);
             past_[0][e] = start_strain(start_deformation_[e], rotation_[e], plastic_[e]);
+            if (!has_past_) past_[1][e] = past_[2][e] = past_[0][e];
         }
         rotation_f_[e] = to_single(rotation_[e]);
     }
@@ -189,17 +195,15 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         const Mat3 deformation = mean_around(i, deformation_);
         follow_rotation(deformation, node_rotation_[i]);
         node_rotation_f_[i] = to_single(node_rotation_[i]);
-        if (is_first)
+        if (is_first) {
             node_past_[0][i] = start_strain(mean_around(i, start_deformation_), node_rotation_[i], node_plastic_[i]);
+            if (!has_past_) node_past_[1][i] = node_past_[2][i] = node_past_[0][i];
+        }
+        node_stress_[i] = stress(node_moduli_, deformation, node_rotation_[i], node_plastic_[i], node_past_, i);
     }
-    if (is_first && !std::exchange(has_past_, true)) {
-        for (Past* past : {&past_, &node_past_}) (*past)[1] = (*past)[2] = (*past)[0];
-    }
-    for (std::size_t i = 0; i < node_rotation_.size(); ++i)
-        node_stress_[i] = stress(node_moduli_, mean_around(i, deformation_), node_rotation_[i], node_plastic_[i],
-                                 node_past_, i, damping_rate_);
+    has_past_ = true;
     for (std::size_t e = 0; e < size(); ++e) {
-        Mat3 whole = stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], past_, e, damping_rate_);
+        Mat3 whole = stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], past_, e);
         for (const std::uint32_t node : corners_[e]) whole += 0.25 * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;
@@ -281,7 +285,7 @@ double SolidElements::energy_density(const Moduli& moduli, const Mat3& strain) {
     return moduli.mu * squares(strain) + moduli.lambda / 2 * trace(strain) * trace(strain);
 }
 
-SolidElements::SubstepEnergy SolidElements::energy(std::span<const Vec3> position) const {
+SolidElements::SubstepEnergy SolidElements::substep_energy(std::span<const Vec3> position) const {
     const auto strain_of = [](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
         follow_rotation(deformation, rotation);
         return symmetric_part(transpose(to_matrix(rotation)) * deformation) - Mat3::identity() - plastic;
@@ -300,7 +304,7 @@ SolidElements::SubstepEnergy SolidElements::energy(std::span<const Vec3> positio
     return sum;
 }
 
-SolidElements::SubstepEnergy SolidElements::energy_before() const {
+SolidElements::SubstepEnergy SolidElements::substep_energy_before() const {
     SubstepEnergy sum;
     for (std::size_t e = 0; e < size(); ++e) add_element_energy(e, past_[1][e], past_[0][e], sum);
     for (std::size_t i = 0; i < node_volume_.size(); ++i)
@@ -310,13 +314,17 @@ SolidElements::SubstepEnergy SolidElements::energy_before() const {
 
 void SolidElements::add_energy(const Moduli& moduli, double volume, const Mat3& start, const Mat3& end,
                                SubstepEnergy& sum) {
+    sum.end += volume * energy_density(moduli, end);
     sum.middle += volume * energy_density(moduli, 0.5 * (start + end));
     sum.change += volume * energy_density(moduli, end - start);
-    sum.end += volume * energy_density(moduli, end);
 }
 
 void SolidElements::add_element_energy(std::size_t element, const Mat3& start, const Mat3& end,
                                        SubstepEnergy& sum) const {
+    if (!is_second_order_) {
+        sum.end += volume_[element] * energy_density(element_moduli_, end);
+        return;
+    }
     add_energy(element_moduli_, volume_[element], start, end, sum);
     sum.tetrahedra += volume_[element] * energy_density({mu_, lambda_}, end - start);
 }

@@ -41,17 +41,18 @@ public:
     /// edge (row: edge[0]).
     void add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
 
-    /// Weight of the strain at the end of a substep in its elastic stress; the strains at its start and at the starts
-    /// of the two substeps before have the rest, start_weights.
-    static constexpr double end_weight = 8.0 / 27;
-    static constexpr std::array<double, 3> start_weights{12.0 / 27, 6.0 / 27, 1.0 / 27};
-    /// The next linearise() is the first of a substep.
-    void begin_substep() { is_substep_new_ = true; }
+    /// The next linearise() is the first of a substep of h seconds.
+    void begin_substep(double h);
+    /// Whether the elastic stress of a substep is of second order in time: of the strains at its end, its start and the
+    /// starts of the two substeps before, by fixed weights. Else it is that of the strain at its end.
+    [[nodiscard]] bool is_second_order() const { return is_second_order_; }
+    /// Weight of the strain at the end of a substep in its elastic stress.
+    [[nodiscard]] double end_weight() const { return is_second_order_ ? 8.0 / 27 : 1; }
     /// The next substep begins at rest, as far as its strains know.
     void forget_past() { has_past_ = false; }
-    /// Linearises at these positions (m), to which the nodes have come from `start` in h seconds: finds the rotations
+    /// Linearises at these positions (m), to which the nodes have come from `start`: finds the rotations
     /// and adds elastic and damping forces, N.
-    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h, std::span<Vec3> force);
+    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, std::span<Vec3> force);
     /// Adds the product of K with a move: `factor` times the stiffness of the last linearise(), with the rotations'
     /// change.
     void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
@@ -65,8 +66,10 @@ public:
         double tetrahedra = 0;  ///< of their difference, if all energy were told by the tetrahedra
     };
     /// Of the substep that ends at these positions, and of the one before it.
-    [[nodiscard]] SubstepEnergy energy(std::span<const Vec3> position) const;
-    [[nodiscard]] SubstepEnergy energy_before() const;
+    [[nodiscard]] SubstepEnergy substep_energy(std::span<const Vec3> position) const;
+    [[nodiscard]] SubstepEnergy substep_energy_before() const;
+    /// Elastic energy at these positions, J.
+    [[nodiscard]] double energy(std::span<const Vec3> position) const { return substep_energy(position).end; }
     /// Plastic flow of what is stressed beyond its yield stress at these positions, with the rotations of the last
     /// linearise(). Returns whether there is a yield stress.
     bool flow(std::span<const Vec3> position);
@@ -97,8 +100,8 @@ private:
     };
     /// Elastic strains of tetrahedra or nodes in their axes when this substep and the two before it began.
     using Past = std::array<std::vector<Mat3>, 3>;
-    [[nodiscard]] static Mat3 stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
-                                     const Past& past, std::size_t index, double damping_rate);
+    [[nodiscard]] Mat3 stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
+                              const Past& past, std::size_t index) const;
     static void add_energy(const Moduli& moduli, double volume, const Mat3& start, const Mat3& end, SubstepEnergy& sum);
     void add_element_energy(std::size_t element, const Mat3& start, const Mat3& end, SubstepEnergy& sum) const;
     [[nodiscard]] static double energy_density(const Moduli& moduli, const Mat3& strain);
@@ -119,7 +122,7 @@ private:
     std::vector<Quat> rotation_, node_rotation_;
     std::vector<Mat3> plastic_, node_plastic_;  ///< strains in the axes at rest, without a trace
     Past past_, node_past_;
-    bool is_substep_new_ = true, has_past_ = false;
+    bool is_substep_new_ = true, has_past_ = false, is_second_order_ = false;
     double damping_rate_ = 0;     ///< β/h of the substep
     std::vector<Around> around_;  ///< of node i those from first_around_[i] to first_around_[i + 1]
     std::vector<std::uint32_t> first_around_;

@@ -13,11 +13,14 @@ namespace embody::physics::stages {
 
 namespace {
 
+// Speed, and gain of speed in a substep, below which a solid is pushed back no further, over the speed at which it
+// came: what comes to a stop slows down by less and less. Test: SoftTime.BallsAndCubesComeBackAsTheirRestitutionSays.
+constexpr double slow_fraction = 0.02;
+
 /// What a solid and another thing do to each other in a substep.
 struct Touch {
     std::uint32_t solid = 0;
-    SolidBounce now;       // its partner, normal and place
-    double push = 0;       // along the normal, N
+    SolidBounce now;       // its partner, and the push of this substep
     bool is_held = false;  // one holds the other, or the two are being separated
 };
 
@@ -45,6 +48,8 @@ private:
     // One for each pair; of two solids, the first one's.
     [[nodiscard]] std::vector<Touch> find_touches(std::span<const SolidContact> contacts) const {
         std::vector<Touch> touches;
+        std::vector<Vec3> centers;
+        for (const DeformableRecord* record : records_) centers.push_back(motion_of_whole(record->nodes()).center);
         for (const SolidContact& contact : contacts) {
             if (contact.force == Vec3{}) continue;
             const bool has_body = contact.has_body();
@@ -63,43 +68,44 @@ private:
             for (std::size_t k = 0; k < contact.point.count; ++k)
                 place +=
                     contact.point.weight[k] * records_[contact.point.solid]->nodes().position[contact.point.node[k]];
-            touch->push += push;
-            touch->now.place += push * place;
-            touch->now.normal += (is_second ? -push : push) * contact.normal;
+            touch->now.pushes += push;
+            touch->now.arms += push * (place - centers[solid]);
+            touch->now.normals += (is_second ? -push : push) * contact.normal;
             touch->is_held = touch->is_held || contact.holds || contact.parts;
         }
-        std::erase_if(touches, [](const Touch& touch) { return !(touch.push > 0); });
-        for (Touch& touch : touches) {
-            touch.now.place = touch.now.place / touch.push;
-            touch.push = length(touch.now.normal);
-            touch.now.normal = normalized(touch.now.normal);
-        }
+        std::erase_if(touches, [](const Touch& touch) { return !(touch.now.pushes > 0); });
         return touches;
     }
 
     void follow(const Touch& touch) {
         // Slower ones lie there: gravity alone makes half of that in a step.
-        const double least = 2 * length(world_.settings.gravity) * world_.settings.time_step;  // m/s
+        const double min_approach = 2 * length(world_.settings.gravity) * world_.settings.time_step;  // m/s
         std::vector<SolidBounce>& bounces = records_[touch.solid]->bounces;
         auto bounce = std::ranges::find(bounces, touch.now.partner, &SolidBounce::partner);
-        const Motion motion = motion_of(touch.solid, touch.now);
         if (bounce == bounces.end()) {
+            const Motion motion = motion_of(touch.solid, touch.now);
             SolidBounce begun = touch.now;
-            const double approach = motion.inverse_mass * touch.push * h_ - motion.speed;
+            const double approach = motion.inverse_mass * length(touch.now.normals) * h_ - motion.speed;
             const double restitution = restitution_of(touch.solid, touch.now);
             if (!touch.is_held && restitution > 0 && is_free(touch.solid) &&
-                approach > std::max(least, records_[touch.solid]->definition.material.restitution_threshold))
+                approach > std::max(min_approach, records_[touch.solid]->definition.material.restitution_threshold))
                 begun.approach = approach;
             begun.speed = motion.speed;
             bounces.push_back(begun);
             return;
         }
-        bounce->normal = touch.now.normal;
-        bounce->place = touch.now.place;
-        if (!(bounce->approach > 0) || bounce->has_come_back) return;
+        if (!(bounce->approach > 0)) return;
+        bounce->pushes += touch.now.pushes;
+        bounce->normals += touch.now.normals;
+        bounce->arms += touch.now.arms;
+        const Motion motion = motion_of(touch.solid, *bounce);
+        if (bounce->has_come_back) {
+            if (!(motion.speed > 0)) bounce->approach = 0;  // it stays
+            return;
+        }
         // Nothing pushes the two apart any more.
-        constexpr double still = 0.02;  // of the approach: what comes to a stop slows down by less and less
-        if (motion.speed > -still * bounce->approach && motion.speed - bounce->speed < still * bounce->approach) {
+        const double slow = slow_fraction * bounce->approach;
+        if (motion.speed > -slow && motion.speed - bounce->speed < slow) {
             come_back(touch.solid, *bounce);
             bounce->has_come_back = true;
         }
@@ -107,6 +113,7 @@ private:
     }
 
     struct Motion {
+        Vec3 normal, place;
         double speed = 0;         // of the solid away from the other, m/s
         double inverse_mass = 0;  // of both, there and along the normal, 1/kg
     };
@@ -125,21 +132,21 @@ private:
     }
     [[nodiscard]] Motion motion_of(std::uint32_t solid, const SolidBounce& bounce) const {
         const WholeMotion one = motion_of_whole(records_[solid]->nodes());
-        Motion motion{dot(bounce.normal, one.velocity_at(bounce.place)),
-                      one.inverse_mass_at(bounce.place, bounce.normal)};
+        const Vec3 normal = normalized(bounce.normals), place = one.center + bounce.arms / bounce.pushes;
+        Motion motion{normal, place, dot(normal, one.velocity_at(place)), one.inverse_mass_at(place, normal)};
         const std::uint32_t other = index_of_other(bounce);
         if (other == no_body) return motion;
         if (bounce.has_body) {
             const TouchedBody& body = bodies_[other];
-            const Vec3 arm = bounce.place - body.center_at(time_), turning = cross(arm, bounce.normal);
-            motion.speed -= dot(bounce.normal, body.displacement(h_, time_, arm)) / h_;
+            const Vec3 arm = place - body.center_at(time_), turning = cross(arm, normal);
+            motion.speed -= dot(normal, body.displacement(h_, time_, arm)) / h_;
             if (body.is_dynamic)
                 motion.inverse_mass += body.inverse_mass + dot(turning, body.inverse_inertia * turning);
             return motion;
         }
         const WholeMotion two = motion_of_whole(records_[other]->nodes());
-        motion.speed -= dot(bounce.normal, two.velocity_at(bounce.place));
-        if (is_free(other)) motion.inverse_mass += two.inverse_mass_at(bounce.place, bounce.normal);
+        motion.speed -= dot(normal, two.velocity_at(place));
+        if (is_free(other)) motion.inverse_mass += two.inverse_mass_at(place, normal);
         return motion;
     }
     [[nodiscard]] bool is_free(std::uint32_t solid) const {
@@ -167,15 +174,15 @@ private:
             speed = std::sqrt(std::max(0.0, 2 * motion.inverse_mass * (most - left)));
             speed = std::min(wanted, std::max(speed, motion.speed));
         }
-        const Vec3 impulse = ((speed - motion.speed) / motion.inverse_mass) * bounce.normal;  // N s
-        own.strike(impulse, bounce.place);
+        const Vec3 impulse = ((speed - motion.speed) / motion.inverse_mass) * motion.normal;  // N s
+        own.strike(impulse, motion.place);
         const std::uint32_t other = index_of_other(bounce);
         if (other == no_body) return;
         if (bounce.has_body) {
             TouchedBody& body = bodies_[other];
-            body.push(-impulse, bounce.place - body.center_at(time_), h_);
+            body.push(-impulse, motion.place - body.center_at(time_), h_);
         } else if (is_free(other)) {
-            records_[other]->solid()->strike(-impulse, bounce.place);
+            records_[other]->solid()->strike(-impulse, motion.place);
         }
     }
 
