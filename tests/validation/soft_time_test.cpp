@@ -12,8 +12,6 @@
 namespace embody::physics {
 namespace {
 
-constexpr double g = 9.81;
-
 double whole_energy(const World& world) {
     const Conserved sum = world.conserved();
     return sum.kinetic_energy + sum.potential_energy;
