@@ -177,9 +177,10 @@ void add_surface(Rows& rows) {
     group.number(
         {"friction_torsional", "SRAG", "Spinning resistance", "Lever arm of the resistance to spinning on the spot."},
         "m", 5e-3, 0, 0.1);
-    group.number(
-        {"restitution", "SRAVG", "Bounciness", "Energetic coefficient of restitution: 0 stays down, 1 loses nothing."},
-        "1", 0.3, 0, 1);
+    group.number({"restitution", "SRAVG", "Bounciness",
+                  "Energetic coefficient of restitution: 0 stays down, 1 loses nothing."
+                  " Soft things with 0 come back as their matter makes them."},
+                 "1", 0.3, 0, 1);
     group.number({"restitution_threshold", "SRAVG", "Least bounce speed", "Slower impacts do not bounce."}, "m/s", 0, 0,
                  10);
     const std::vector<std::string> rules{"pair_table", "own",     "average", "geometric_mean",

@@ -34,7 +34,7 @@ const SCENE = {
 function unmarked() {
   // Names of models, authors and people, keys of the keyboard, the product, WordNet, addresses and commands to type.
   const DATA = ".brand, .key, code, kbd, .tile-name, .model-card, .member-name, .toasts .remedy, [data-testid=attribute-synset] select, [lang=en], [data-testid=attribute-front] select, [data-testid=connection]";
-  const UNITS = /\b(?:kg|mm|cm|lm|rad|Pa|deg|fps|MB|GPa|ms|EA|EI|GJ|nm|CSV|glTF|VR|AR|WebGL|https?|Ctrl|Shift|Alt|Space|Enter|Escape|Home|End|Delete|PageUp|PageDown|SPDX|xx|yy|zz|xy|xz|yz)\b/g;
+  const UNITS = /\b(?:kg|mm|cm|lm|min|rad|Pa|deg|fps|MB|GPa|ms|EA|EI|GJ|nm|CSV|glTF|VR|AR|WebGL|https?|Ctrl|Shift|Alt|Space|Enter|Escape|Home|End|Delete|PageUp|PageDown|SPDX|xx|yy|zz|xy|xz|yz)\b/g;
   const found = new Set();
   const look = (text, where) => {
     let rest = text;

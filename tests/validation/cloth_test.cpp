@@ -125,9 +125,8 @@ TEST(ClothInWorld, ABoxOnTheTableclothStandsStill) {
         run(*world, 3);
         const Vec3 start = world->pose(box).position;
         run(*world, 4);
-        // The heavy one, 800 times the sheet, rocks by some millimetres (docs/physics/cloth.md).
-        EXPECT_LT(length(world->pose(box).position - start), mass < 1 ? 1e-4 : 1e-2) << mass;
-        EXPECT_NEAR(world->pose(box).position.y, 0.8, 0.01) << mass;
+        EXPECT_LT(length(world->pose(box).position - start), 1e-4) << mass;
+        EXPECT_NEAR(world->pose(box).position.y, 0.802, 1e-4) << mass;
         for (const Vec3 node : world->node_positions(cloth)) EXPECT_TRUE(is_finite(node));
     }
 }

@@ -7,17 +7,13 @@
 #include "physics/definitions/deformable_primitives.h"
 #include "validation/fluid_scenes.h"
 #include "validation/reference.h"
+#include "validation/setting_scene_parts.h"
 #include "validation/setting_scenes.h"
 
 namespace embody::physics {
 namespace {
 
 constexpr BodyKind still = BodyKind::static_body, led = BodyKind::kinematic_body;
-
-BodyHandle add_ball(World& world, double radius, BodyDefinition ball) {
-    ball.shape = world.create_shape(SphereShape{radius}).value();
-    return world.create_body(ball).value();
-}
 
 DeformableHandle add(World& world, DeformableDefinition definition, Vec3 at, Vec3 velocity = {}, Vec3 spin = {}) {
     definition.pose.position = at;

@@ -214,6 +214,7 @@ void add_brick(World& world, Vec3 at, const SoftSolid& solid, Vec3 velocity = {}
     auto brick = tetrahedral_brick({0.4, 0.3, 0.4}, {4, 3, 4}, solid);
     brick.pose.position = at;
     brick.linear_velocity = velocity;
+    brick.material.restitution = 0.4;
     EXPECT_TRUE(world.create_deformable(brick).ok());
 }
 
@@ -227,8 +228,9 @@ GoldenScene soft_heap() {
     SoftSolid plastic = foam(5e4), airy = foam(1e4);
     plastic.yield_stress = 1500;
     airy.internal_pressure = 2000;
+    airy.rayleigh_damping = 0.002;
     add_brick(world, {1, 0.01, 0}, plastic);
-    add_brick(world, {2, 0.01, 0}, airy);
+    add_brick(world, {2, 0.3, 0}, airy);
     for (int i = 0; i < 3; ++i) {
         add_box(world, {0.12, 0.1, 0.12},
                 {.position = {0.2 + i, 0.9 + 0.1 * i, 0.2}, .linear_velocity = {0, -2, 0}, .mass = {.mass = 4}});

@@ -212,10 +212,12 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     find_places(dt, workers);
     particles_to_grid(grid_, particles_, places_, {particle_fraction(), liquids_}, workers);
     immersed_.find_conductance(dt, liquids_, grid_);
-    accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, settings_, workers);
+    find_convection(grid_, dt, workers);
+    find_surface_change(grid_, surface_change_, workers);
+    accelerate(gravity * dt, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {liquids_, is_tense_, settings_.components});
     const double density = properties().density;
     obstacles_.list_areas(grid_, gravity * density);
@@ -232,6 +234,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
+    add_to_faces(grid_, surface_change_);
     follow_obstacles(grid_, obstacles_, sticking(), workers);
     spread_out(workers);
 }
@@ -431,12 +434,7 @@ void FluidSolver::move_particles(double dt, Vec3 gravity, TaskPool& workers) {
                 particle.velocity[a] = sample.value[a];
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);
             }
-            // Along the affine field by the midpoint rule.
-            for (int a = 0; a < 3; ++a) {
-                const float* g = particle.affine[a];
-                const float turn = g[0] * sample.value[0] + g[1] * sample.value[1] + g[2] * sample.value[2];
-                end[a] = particle.position[a] + time * (sample.value[a] + 0.5f * time * turn) + shift[a];
-            }
+            for (int a = 0; a < 3; ++a) end[a] = particle.position[a] + time * sample.value[a] + shift[a];
             collider.move(particle, end);
         }
     });

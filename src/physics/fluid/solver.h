@@ -135,6 +135,7 @@ private:
     std::uint32_t next_id_ = 0;
     std::vector<std::array<float, 3>> places_;  // places at which they meet the grid
     std::vector<double> flow_, impulse_, potential_;
+    std::vector<FaceValue> surface_change_;
     double speed_ = 0;       // usual one when the step began, m/s
     bool is_tense_ = false;  // its surface has tension in this step
 };

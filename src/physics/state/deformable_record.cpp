@@ -108,6 +108,7 @@ bool DeformableRecord::has_surface_of(const DeformableRecord& other) const {
 Quat DeformableRecord::rotation() const { return solid() ? solid()->rotation(0) : definition.pose.rotation; }
 
 void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {
+    bounces.clear();
     if (SolidDeformable* own = solid()) return own->set_motion(positions, velocities, rotation);
     Nodes& all = thin_nodes(*this);
     std::ranges::copy(positions, all.position.begin());
@@ -127,6 +128,7 @@ void DeformableRecord::set_flow(std::vector<NodeFlow> flow) {
 }
 
 void DeformableRecord::rest() {
+    bounces.clear();
     if (SolidDeformable* own = solid()) return own->rest();
     Nodes& all = thin_nodes(*this);
     std::ranges::fill(all.mean_velocity, Vec3{});
@@ -134,6 +136,7 @@ void DeformableRecord::rest() {
 }
 
 void DeformableRecord::stop_at(std::span<const Vec3> positions) {
+    bounces.clear();
     if (SolidDeformable* own = solid()) return own->stop_at(positions);
     rest();
     Nodes& all = thin_nodes(*this);

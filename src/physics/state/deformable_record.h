@@ -21,6 +21,17 @@ struct SurfacePush {
     Vec3 force;                               ///< on the solid, N
 };
 
+/// What a solid touches, since it came there.
+struct SolidBounce {
+    std::uint64_t partner = 0;  ///< as of SolidContact
+    bool has_body = false;      ///< else the partner is a solid
+    double pushes = 0;          ///< sum of the pushes of all substeps since then, N
+    Vec3 normals, arms;         ///< of these, times the pushes: from the partner to the solid; from the solid's centre
+    double approach = 0;        ///< speed at which it came, m/s; 0: too slow to bounce
+    double speed = 0;           ///< away from the partner at the end of the last substep, m/s
+    bool has_come_back = false;
+};
+
 /// What the step of the liquids before expects of a deformable's elastic forces and contacts
 /// (docs/physics/coupling.md).
 struct LiquidMemory {
@@ -42,6 +53,7 @@ struct DeformableRecord {
     std::vector<std::unique_ptr<CollisionShape>> capsules;  ///< of a rope's segments at rest, one a length
     std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
     std::vector<SolidContact> contacts;                     ///< a solid's contacts of the last step
+    std::vector<SolidBounce> bounces;                       ///< a solid's
     std::vector<std::uint32_t> touched_bodies;              ///< slots of bodies that it pushed in the last step
     std::vector<std::uint32_t> touched_deformables;         ///< slots
     /// The state of a body that it pushed, at that time.

@@ -308,5 +308,33 @@ TEST(LiquidCells, OneParticleMakesNone) {
     EXPECT_TRUE(liquid.cells.empty());
 }
 
+// One of eight particles is left in 2 × 2 × 2 cells within a block, and then in the cells above them, too.
+TEST(LiquidCells, ThinPocketsAreLiquidUnlessAirLeadsToThem) {
+    for (const bool is_open : {false, true}) {
+        std::vector<FluidParticle> particles = fill_cells(h, {0, 0, 0}, {12, 12, 12});
+        std::erase_if(particles, [&](const FluidParticle& particle) {
+            bool is_thin = true, is_kept = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double cells = particle.position[axis] / h;
+                is_thin = is_thin && cells > 5 && (cells < 7 || (is_open && axis == 1));
+                is_kept = is_kept && cells - std::floor(cells) < 0.5;
+            }
+            return is_thin && !is_kept;
+        });
+        LiquidBlock block(h, std::move(particles));
+        LiquidCells liquid;
+        mark_liquid(block.grid, {}, liquid, block.workers);
+        for (const double x : {0.55, 0.65}) {
+            for (const double y : {0.55, 0.65}) {
+                for (const double z : {0.55, 0.65}) {
+                    const int cell = block.index_at({x, y, z});
+                    EXPECT_LT(block.grid.density[cell], 0.5f);
+                    EXPECT_EQ(block.grid.surface[cell] < 0, !is_open) << x << ' ' << y << ' ' << z;
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace embody::physics::fluid

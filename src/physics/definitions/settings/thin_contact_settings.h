@@ -13,6 +13,10 @@ struct ThinContactSettings {
     double stiffness_factor = 20;
     /// The same over the inertia of the load on a point. Test: Settings.AreNoticed.
     double load_stiffness_factor = 4;
+    /// Stiffness of all contacts of a sheet's nodes with a body that moves together, over its inertia. Source:
+    /// docs/physics/cloth.md, "What lies on a sheet": stable from recovery_fraction on. Test:
+    /// ThingsOnSheets.StandStill.
+    double body_stiffness_factor = 100;
     /// The same over the inertia of a body in which a node begins, at that place. Test: Settings.AreNoticed.
     double recovery_stiffness_factor = 2;
     /// Stiffness of what bears a body that deformables push, over the inertia of all that they are solved with. Test:
@@ -76,6 +80,7 @@ template <>
 inline constexpr auto settings_of<ThinContactSettings> = std::tuple{
     Setting{"stiffness_factor", &ThinContactSettings::stiffness_factor, 1, 1e4},
     Setting{"load_stiffness_factor", &ThinContactSettings::load_stiffness_factor, 0, 1e4},
+    Setting{"body_stiffness_factor", &ThinContactSettings::body_stiffness_factor, 0, 1e4},
     Setting{"recovery_stiffness_factor", &ThinContactSettings::recovery_stiffness_factor, 1e-3, 1e4},
     Setting{"support_stiffness_factor", &ThinContactSettings::support_stiffness_factor, 1e-3, 1e4},
     Setting{"recovery_speed", &ThinContactSettings::recovery_speed, 0, 1e3, "m/s"},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/free_motion.h"
 
-#include "math/mat3.h"
-
 namespace embody::physics::deformable {
 
 void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings) {
@@ -61,6 +59,16 @@ double flow_energy(const NodeFlow& flow, Vec3 move, const Substep& substep) {
     return dot(scale(flow.drag, beyond), beyond) / (2 * substep.h);
 }
 
+double WholeMotion::inverse_mass_at(Vec3 place, Vec3 n) const {
+    const Vec3 turning = cross(place - center, n);
+    return 1 / mass + dot(turning, solve(inertia, turning));
+}
+
+void WholeMotion::strike(Vec3 impulse, Vec3 place) {
+    velocity += impulse / mass;
+    spin += solve(inertia, cross(place - center, impulse));
+}
+
 WholeMotion motion_of_whole(const Nodes& nodes) {
     double mass = 0;
     Vec3 center, momentum, turning;
@@ -76,7 +84,7 @@ WholeMotion motion_of_whole(const Nodes& nodes) {
         turning += cross(arm, nodes.mass[i] * nodes.mean_velocity[i]);
         inertia += nodes.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
     }
-    return {momentum / mass, solve(inertia, turning)};
+    return {momentum / mass, solve(inertia, turning), mass, center, inertia};
 }
 
 void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {

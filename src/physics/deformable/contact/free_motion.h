@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "math/mat3.h"
 #include "physics/definitions/settings/thin_contact_settings.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/substep.h"
@@ -32,6 +33,15 @@ void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSe
 /// Motion of all nodes, weighted by mass.
 struct WholeMotion {
     Vec3 velocity, spin;  ///< m/s, rad/s
+    double mass = 0;      ///< kg
+    Vec3 center;          ///< m
+    Mat3 inertia = Mat3::zero();
+
+    [[nodiscard]] Vec3 velocity_at(Vec3 place) const { return velocity + cross(spin, place - center); }
+    /// Change of that velocity along n by an impulse of 1 N s along n, 1/kg.
+    [[nodiscard]] double inverse_mass_at(Vec3 place, Vec3 n) const;
+    /// After an impulse (N s) there.
+    void strike(Vec3 impulse, Vec3 place);
 };
 [[nodiscard]] WholeMotion motion_of_whole(const Nodes& nodes);
 

@@ -69,11 +69,12 @@ Bounds SolidDeformable::bounds() const {
     return bounds;
 }
 
-// P = M/h² + (1 + β/h) K of the tetrahedra as they are turned now; pinned nodes stand apart.
+// P = M/h² + (a + β/h) K of the tetrahedra as they are turned now, with the weight a of a substep's end; pinned nodes
+// stand apart. Of second order P must not be softer than the true stiffness at all, and a is greater.
 void SolidDeformable::make_factor(double h) {
     factor_h_ = h;
     std::vector<Mat3> diagonal(nodes_.size(), Mat3::zero()), blocks(elements_.edges().size(), Mat3::zero());
-    elements_.add_stiffness_blocks(1 + damping_ / h, diagonal, blocks);
+    elements_.add_stiffness_blocks(metric_weight() + damping_ / h, diagonal, blocks);
     factor_rotations_ = elements_.node_rotations();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const double inertia = nodes_.mass[i] / (h * h);
@@ -104,7 +105,11 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
             nodes_.mean_velocity[i] -= (h / 2) * gravity + back * turning;
         }
     }
-    if (factor_h_ != h) make_factor(h);
+    elements_.begin_substep(h);
+    if (factor_h_ != h) {
+        elements_.forget_past();
+        make_factor(h);
+    }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         start_[i] = nodes_.position[i];
         nodes_.position[i] += h * nodes_.mean_velocity[i];
@@ -112,7 +117,6 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
         unsettled_[i] = {};
     }
     kinetic_energy_at_start_ = kinetic_energy();  // the nodes have moved by their velocities
-    if (is_new_) elastic_energy_.reset();
     energy_at_start_.reset();
     is_new_ = false;
 }
@@ -130,13 +134,13 @@ void SolidDeformable::solve(TaskPool& workers) {
         const Vec3 rate = (nodes_.position[i] - start_[i]) / h_;
         force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate) / h_) + pushes_[i];
     }
-    elements_.linearise(nodes_.position, start_, h_, force_);
+    elements_.linearise(nodes_.position, start_, force_);
     press();
     find_gas_move(workers);
     quasi_newton_move(force_, move_, workers);
     // The metric must not be softer along the move than the true stiffness, or moves grow from substep to substep.
     stretch_ = 1;
-    const double max_ratio = settings_.max_stiffness_ratio;
+    const double max_ratio = elements_.is_second_order() ? 1 : settings_.max_stiffness_ratio;
     double ratio = stiffness_ratio();
     if (ratio > max_ratio) {
         make_factor(h_);
@@ -204,7 +208,7 @@ double SolidDeformable::stiffness_ratio() {
         metric += dot(move_[i], force_[i]);
         true_one += nodes_.mass[i] / (h_ * h_) * length_squared(move_[i]);
     }
-    elements_.add_stiffness(static_cast<float>(1 + damping_ / h_), turned_, product_);
+    elements_.add_stiffness(static_cast<float>(elements_.end_weight() + damping_ / h_), turned_, product_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) true_one += dot(move_[i], to_vec3(product_[i]));
     if (gas_) {
         double along = 0;
@@ -243,7 +247,40 @@ void SolidDeformable::go_on_with(std::span<const Vec3> force, TaskPool& workers)
         nodes_.velocity[i] += 1.5 / h_ * move_[i];
         nodes_.mean_velocity[i] += move_[i] / h_;
     }
-    elastic_energy_.reset();
+}
+
+void SolidDeformable::strike(Vec3 impulse, Vec3 place) {
+    const WholeMotion before = motion_of_whole(nodes_);
+    WholeMotion after = before;
+    after.strike(impulse, place);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 change = after.velocity_at(nodes_.position[i]) - before.velocity_at(nodes_.position[i]);
+        nodes_.mean_velocity[i] += change;
+        nodes_.velocity[i] += change;
+    }
+}
+
+double SolidDeformable::calm_down(double most) {
+    const WholeMotion whole = motion_of_whole(nodes_);
+    const auto other_velocity = [&](std::size_t i) {
+        return nodes_.mean_velocity[i] - whole.velocity_at(nodes_.position[i]);
+    };
+    double kinetic = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) kinetic += nodes_.mass[i] / 2 * length_squared(other_velocity(i));
+    const double elastic = elastic_energy() + gas_energy(nodes_.position);
+    if (!(kinetic + elastic > most)) return kinetic + elastic;
+    const double fraction = kinetic > 0 ? std::sqrt(std::max(0.0, most - elastic) / kinetic) : 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 taken = (1 - fraction) * other_velocity(i);
+        nodes_.mean_velocity[i] -= taken;
+        nodes_.velocity[i] -= taken;
+    }
+    return std::max(most, elastic);
+}
+
+// Of the tetrahedra's stiffness in the metric.
+double SolidDeformable::metric_weight() const {
+    return elements_.is_second_order() ? settings_.max_stiffness_ratio * elements_.end_weight() : 1;
 }
 
 // Of the moves in the substep.
@@ -256,14 +293,25 @@ double SolidDeformable::kinetic_energy() const {
     return sum;
 }
 
-double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
-    double sum = elements_.energy(positions);
-    if (gas_) {
-        EnclosedGas gas = *gas_;
-        gas.measure(surface_, positions, settings_.min_gas_fraction);
-        sum += gas.energy();
-    }
-    return sum;
+double SolidDeformable::gas_energy(std::span<const Vec3> positions) const {
+    if (!gas_) return 0;
+    EnclosedGas gas = *gas_;
+    gas.measure(surface_, positions, settings_.min_gas_fraction);
+    return gas.energy();
+}
+
+double SolidDeformable::elastic_energy() const {
+    const SolidElements::SubstepEnergy energy = elements_.substep_energy(nodes_.position);
+    return elements_.is_second_order() ? energy.middle : energy.end;
+}
+
+// What the scheme keeps of a linear oscillation of circular frequency ω, to the second order of ω h: its mass is
+// greater by that of the metric less that of the mean of strains, and the four weights of the strains make 1/27 of it
+// more.
+double SolidDeformable::kept_energy(const SolidElements::SubstepEnergy& energy) const {
+    if (!elements_.is_second_order()) return energy.end;
+    const double of_metric = metric_weight() * energy.tetrahedra;
+    return energy.middle + std::max(0.0, of_metric + (1.0 / 27 - 0.25) * energy.change);
 }
 
 // Energy beyond the energy before and the work of the pushes, J, with the excess of earlier substeps; none where all
@@ -276,14 +324,20 @@ std::optional<double> SolidDeformable::find_surplus() {
     const double slow_fraction = settings_.energy_travel_fraction;
     if (farthest < slow_fraction * slow_fraction * mean_side_ * mean_side_) return std::nullopt;
     if (!energy_at_start_)
-        energy_at_start_ = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
+        energy_at_start_ =
+            kinetic_energy_at_start_ + kept_energy(elements_.substep_energy_before()) + gas_energy(start_);
+    // Of second order the kept energy is that of the substep's middle.
+    const double half = elements_.is_second_order() ? 0.5 : 0;
     double work = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        if (nodes_.inverse_mass[i] > 0)
-            work += dot(pushes_[i] + nodes_.mass[i] * gravity_, nodes_.position[i] - start_[i]);
+        if (!(nodes_.inverse_mass[i] > 0)) continue;
+        const Vec3 move = (1 - half) * (nodes_.position[i] - start_[i]) + (half * h_) * nodes_.mean_velocity[i];
+        work += dot(pushes_[i] + nodes_.mass[i] * gravity_, move);
     }
-    elastic_energy_ = elastic_energy(nodes_.position);
-    return surplus_ + kinetic_energy() + *elastic_energy_ - *energy_at_start_ - work;
+    // Nor may the stretch at the end alone have more: a move that is left out would show it.
+    const SolidElements::SubstepEnergy elastic = elements_.substep_energy(nodes_.position);
+    return surplus_ + std::max(kinetic_energy() + kept_energy(elastic), elastic.end) + gas_energy(nodes_.position) -
+           *energy_at_start_ - work;
 }
 
 // The excess of earlier substeps may only decrease.
@@ -313,7 +367,6 @@ bool SolidDeformable::keep_energy() {
             left = find_surplus();
         }
     }
-    if (!left) elastic_energy_.reset();
     surplus_ = std::max(0.0, left.value_or(0));
     return is_shortened;
 }
@@ -394,6 +447,7 @@ void SolidDeformable::set_motion(std::span<const Vec3> positions, std::span<cons
 void SolidDeformable::rest() {
     std::ranges::fill(nodes_.mean_velocity, Vec3{});
     std::ranges::fill(nodes_.velocity, Vec3{});
+    elements_.forget_past();
 }
 
 void SolidDeformable::stop_at(std::span<const Vec3> positions) {
@@ -416,7 +470,7 @@ Conserved SolidDeformable::conserved(Vec3 gravity) const {
         sum.linear_momentum += mass * v;
         sum.angular_momentum += cross(x, mass * v);
     }
-    sum.potential_energy += elastic_energy(nodes_.position);
+    sum.potential_energy += elastic_energy() + gas_energy(nodes_.position);
     return sum;
 }
 

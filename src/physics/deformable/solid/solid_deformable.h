@@ -51,6 +51,12 @@ public:
     /// After finish(): moves the nodes by the effect of these additional forces (N) in the substep.
     void go_on_with(std::span<const Vec3> force, TaskPool& workers);
 
+    /// After finish(): lets an impulse (N s) act on the whole at a place.
+    void strike(Vec3 impulse, Vec3 place);
+    /// After finish(): takes energy from the velocities that are not those of the whole, so that they and the elastic
+    /// energy have no more than `most`, or none. Returns what both have then, J.
+    double calm_down(double most);
+
     /// Where a node was when the substep began, m.
     [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
     /// Displacement of touched nodes by forces on each other in this substep, times stretch(): node i's displacement is
@@ -75,10 +81,7 @@ public:
     void take_plastic_strain(const SolidDeformable& other) { elements_.take_plastic_strain(other.elements_); }
     /// As of SolidElements.
     [[nodiscard]] std::vector<std::array<double, 5>> plastic_strain() const { return elements_.plastic_strain(); }
-    void set_plastic_strain(std::span<const std::array<double, 5>> strains) {
-        elements_.set_plastic_strain(strains);
-        elastic_energy_.reset();
-    }
+    void set_plastic_strain(std::span<const std::array<double, 5>> strains) { elements_.set_plastic_strain(strains); }
     /// Takes all velocities away.
     void rest();
     /// Puts its nodes back to where they were, at rest.
@@ -113,7 +116,10 @@ private:
     [[nodiscard]] bool is_too_much(std::optional<double> surplus) const;
     [[nodiscard]] bool is_let_alone() const;
     [[nodiscard]] double kinetic_energy() const;
-    [[nodiscard]] double elastic_energy(std::span<const Vec3> positions) const;
+    [[nodiscard]] double metric_weight() const;
+    [[nodiscard]] double kept_energy(const SolidElements::SubstepEnergy& energy) const;
+    [[nodiscard]] double elastic_energy() const;
+    [[nodiscard]] double gas_energy(std::span<const Vec3> positions) const;
 
     SolidElements elements_;
     SolidSettings settings_;  // of the substep
@@ -123,10 +129,9 @@ private:
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
     double mean_side_ = 0;
-    bool is_free_ = true;  // no node is pinned
-    bool is_new_ = true;   // has made no substep yet
-    // J: at the end of the last substep, of this one's start; none: not measured; come from nowhere so far
-    std::optional<double> elastic_energy_, energy_at_start_;
+    bool is_free_ = true;                    // no node is pinned
+    bool is_new_ = true;                     // has made no substep yet
+    std::optional<double> energy_at_start_;  // J, of the substep before; none: not measured; come from nowhere so far
     double kinetic_energy_at_start_ = 0, surplus_ = 0;
     std::optional<double> found_surplus_;  // by gains_energy(), with no move since: is_measured_
     bool is_measured_ = false;

@@ -47,7 +47,8 @@ SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
     find_edges();
     deformation_.resize(size());
     start_deformation_.resize(size());
-    start_stretch_.assign(size(), Mat3::zero());
+    for (std::vector<Mat3>& past : past_) past.assign(size(), Mat3::zero());
+    for (std::vector<Mat3>& past : node_past_) past.assign(rest.size(), Mat3::zero());
     node_stress_.resize(rest.size());
     rotation_f_.resize(size());
     gradient_f_.resize(size());
@@ -129,30 +130,48 @@ Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) 
            outer(values[corners[3]] - origin, g[2]);
 }
 
-// Elastic and damping stress: the latter of β/h times the change of the stretch Rᵀ F.
+// Elastic stress of the strains of this and the last substeps, and that of β/h times the change of the strain.
 Mat3 SolidElements::stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
-                           const Mat3& start_stretch, double damping_rate) {
-    const Mat3 r = to_matrix(rotation), stretch = symmetric_part(transpose(r) * deformation);
-    const Mat3 strain = stretch - Mat3::identity() - plastic + damping_rate * (stretch - start_stretch);
-    return turned_stress(r, strain, moduli.mu, moduli.lambda);
+                           const Past& past, std::size_t index) const {
+    const Mat3 r = to_matrix(rotation);
+    const Mat3 strain = symmetric_part(transpose(r) * deformation) - Mat3::identity() - plastic;
+    Mat3 felt = (end_weight() + damping_rate_) * strain - damping_rate_ * past[0][index];
+    if (is_second_order_) felt += (1.0 / 27) * (12 * past[0][index] + 6 * past[1][index] + past[2][index]);
+    return turned_stress(r, felt, moduli.mu, moduli.lambda);
 }
 
-// Rᵀ F at the start of a substep, before it turned to `rotation`. The square of small turns is negligible, as long as
-// the damping is not large.
-Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const {
-    const double same = settings_.same_rotation_turn;  // of the quaternion: half the angle, rad
-    const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};
-    Quat there = rotation;
-    if (length_squared(turn) * (1 + damping_rate) > same * same) {
-        there = before;
-        follow_rotation(deformation, there);
+// Damping of β >= h would hide what the second order gains.
+void SolidElements::begin_substep(double h) {
+    is_substep_new_ = true;
+    is_second_order_ = damping_ < h;
+    damping_rate_ = damping_ / h;
+}
+
+// The strain at the start of a substep, by the rotation there; `rotation` is the one at its end. The square of small
+// turns between the two is negligible, as long as the damping is not large.
+Mat3 SolidElements::start_strain(const Mat3& deformation, Quat rotation, const Mat3& plastic) const {
+    const double same = settings_.same_rotation_turn;  // half the angle, rad
+    Mat3 stretch = transpose(to_matrix(rotation)) * deformation;
+    // Four times the half angle, where the stretch is near 1.
+    const Vec3 skewness{stretch(2, 1) - stretch(1, 2), stretch(0, 2) - stretch(2, 0), stretch(1, 0) - stretch(0, 1)};
+    if (!(length_squared(skewness) * (1 + damping_rate_) < 16 * same * same && trace(stretch) > 0)) {
+        follow_rotation(deformation, rotation);
+        stretch = transpose(to_matrix(rotation)) * deformation;
     }
-    return symmetric_part(transpose(to_matrix(there)) * deformation);
+    return symmetric_part(stretch) - Mat3::identity() - plastic;
 }
 
-void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h,
-                              std::span<Vec3> force) {
-    const double damping_rate = damping_ / h;
+void SolidElements::shift(Past& past) {
+    past[2].swap(past[1]);
+    past[1].swap(past[0]);
+}
+
+void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, std::span<Vec3> force) {
+    const bool is_first = std::exchange(is_substep_new_, false);
+    if (is_first && is_second_order_) {
+        shift(past_);
+        shift(node_past_);
+    }
     const auto to_single = [](Quat rotation) {
         const Mat3 r = to_matrix(rotation);
         Matrix m;
@@ -163,29 +182,28 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
     };
     for (std::size_t e = 0; e < size(); ++e) {
         deformation_[e] = gradient(e, position);
-        const Quat before = rotation_[e];
         follow_rotation(deformation_[e], rotation_[e]);
-        if (damping_ > 0) {
+        if (is_first) {
             start_deformation_[e] = gradient(e, start);
-            start_stretch_[e] = start_stretch(start_deformation_[e], before, rotation_[e], damping_rate);
+            past_[0][e] = start_strain(start_deformation_[e], rotation_[e], plastic_[e]);
+            if (!has_past_) past_[1][e] = past_[2][e] = past_[0][e];
         }
         rotation_f_[e] = to_single(rotation_[e]);
     }
     // Means around the nodes.
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         const Mat3 deformation = mean_around(i, deformation_);
-        const Quat before = node_rotation_[i];
         follow_rotation(deformation, node_rotation_[i]);
         node_rotation_f_[i] = to_single(node_rotation_[i]);
-        const Mat3 at_start =
-            damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i], damping_rate)
-                         : Mat3::zero();
-        node_stress_[i] =
-            stress(node_moduli_, deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
+        if (is_first) {
+            node_past_[0][i] = start_strain(mean_around(i, start_deformation_), node_rotation_[i], node_plastic_[i]);
+            if (!has_past_) node_past_[1][i] = node_past_[2][i] = node_past_[0][i];
+        }
+        node_stress_[i] = stress(node_moduli_, deformation, node_rotation_[i], node_plastic_[i], node_past_, i);
     }
+    has_past_ = true;
     for (std::size_t e = 0; e < size(); ++e) {
-        Mat3 whole =
-            stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
+        Mat3 whole = stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], past_, e);
         for (const std::uint32_t node : corners_[e]) whole += 0.25 * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;
@@ -263,23 +281,52 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
     }
 }
 
-double SolidElements::energy(std::span<const Vec3> position) const {
-    const auto density = [](const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic) {
+double SolidElements::energy_density(const Moduli& moduli, const Mat3& strain) {
+    return moduli.mu * squares(strain) + moduli.lambda / 2 * trace(strain) * trace(strain);
+}
+
+SolidElements::SubstepEnergy SolidElements::substep_energy(std::span<const Vec3> position) const {
+    const auto strain_of = [](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
         follow_rotation(deformation, rotation);
-        const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
-        return moduli.mu * squares(off) + moduli.lambda / 2 * trace(off) * trace(off);
+        return symmetric_part(transpose(to_matrix(rotation)) * deformation) - Mat3::identity() - plastic;
     };
-    double sum = 0;
+    SubstepEnergy sum;
     std::vector<Mat3> deformation(size());
     for (std::size_t e = 0; e < size(); ++e) {
         deformation[e] = gradient(e, position);
-        sum += volume_[e] * density(element_moduli_, deformation[e], rotation_[e], plastic_[e]);
+        const Mat3 end = strain_of(deformation[e], rotation_[e], plastic_[e]);
+        add_element_energy(e, has_past_ ? past_[0][e] : end, end, sum);
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        const Mat3 mean = mean_around(i, deformation);
-        sum += node_volume_[i] * density(node_moduli_, mean, node_rotation_[i], node_plastic_[i]);
+        const Mat3 end = strain_of(mean_around(i, deformation), node_rotation_[i], node_plastic_[i]);
+        add_energy(node_moduli_, node_volume_[i], has_past_ ? node_past_[0][i] : end, end, sum);
     }
     return sum;
+}
+
+SolidElements::SubstepEnergy SolidElements::substep_energy_before() const {
+    SubstepEnergy sum;
+    for (std::size_t e = 0; e < size(); ++e) add_element_energy(e, past_[1][e], past_[0][e], sum);
+    for (std::size_t i = 0; i < node_volume_.size(); ++i)
+        add_energy(node_moduli_, node_volume_[i], node_past_[1][i], node_past_[0][i], sum);
+    return sum;
+}
+
+void SolidElements::add_energy(const Moduli& moduli, double volume, const Mat3& start, const Mat3& end,
+                               SubstepEnergy& sum) {
+    sum.end += volume * energy_density(moduli, end);
+    sum.middle += volume * energy_density(moduli, 0.5 * (start + end));
+    sum.change += volume * energy_density(moduli, end - start);
+}
+
+void SolidElements::add_element_energy(std::size_t element, const Mat3& start, const Mat3& end,
+                                       SubstepEnergy& sum) const {
+    if (!is_second_order_) {
+        sum.end += volume_[element] * energy_density(element_moduli_, end);
+        return;
+    }
+    add_energy(element_moduli_, volume_[element], start, end, sum);
+    sum.tetrahedra += volume_[element] * energy_density({mu_, lambda_}, end - start);
 }
 
 Mat3 SolidElements::mean_around(std::size_t node, std::span<const Mat3> of_elements) const {
@@ -314,6 +361,7 @@ void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) 
 void SolidElements::take_plastic_strain(const SolidElements& other) {
     plastic_ = other.plastic_;
     node_plastic_ = other.node_plastic_;
+    forget_past();
 }
 
 std::vector<std::array<double, 5>> SolidElements::plastic_strain() const {
@@ -329,6 +377,7 @@ std::vector<std::array<double, 5>> SolidElements::plastic_strain() const {
 }
 
 void SolidElements::set_plastic_strain(std::span<const std::array<double, 5>> strains) {
+    forget_past();
     std::size_t next = 0;
     for (std::vector<Mat3>* list : {&plastic_, &node_plastic_}) {
         for (Mat3& plastic : *list) {
@@ -347,6 +396,7 @@ void SolidElements::limit_strain(Mat3& plastic) const {
 void SolidElements::reset_rotations(Quat rotation) {
     std::ranges::fill(rotation_, rotation);
     std::ranges::fill(node_rotation_, rotation);
+    forget_past();
 }
 
 }  // namespace embody::physics::deformable

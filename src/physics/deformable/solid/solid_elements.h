@@ -41,16 +41,35 @@ public:
     /// edge (row: edge[0]).
     void add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
 
-    /// Linearises at these positions (m), to which the nodes have come from `start` in h seconds: finds the rotations
+    /// The next linearise() is the first of a substep of h seconds.
+    void begin_substep(double h);
+    /// Whether the elastic stress of a substep is of second order in time: of the strains at its end, its start and the
+    /// starts of the two substeps before, by fixed weights. Else it is that of the strain at its end.
+    [[nodiscard]] bool is_second_order() const { return is_second_order_; }
+    /// Weight of the strain at the end of a substep in its elastic stress.
+    [[nodiscard]] double end_weight() const { return is_second_order_ ? 8.0 / 27 : 1; }
+    /// The next substep begins at rest, as far as its strains know.
+    void forget_past() { has_past_ = false; }
+    /// Linearises at these positions (m), to which the nodes have come from `start`: finds the rotations
     /// and adds elastic and damping forces, N.
-    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h, std::span<Vec3> force);
+    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, std::span<Vec3> force);
     /// Adds the product of K with a move: `factor` times the stiffness of the last linearise(), with the rotations'
     /// change.
     void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
     /// The rotation around each node, of the last linearise().
     [[nodiscard]] const std::vector<Quat>& node_rotations() const { return node_rotation_; }
+    /// Elastic energies of a substep, J.
+    struct SubstepEnergy {
+        double middle = 0;      ///< of the mean of the strains at its start and its end
+        double change = 0;      ///< of their difference
+        double end = 0;         ///< of the strains at its end
+        double tetrahedra = 0;  ///< of their difference, if all energy were told by the tetrahedra
+    };
+    /// Of the substep that ends at these positions, and of the one before it.
+    [[nodiscard]] SubstepEnergy substep_energy(std::span<const Vec3> position) const;
+    [[nodiscard]] SubstepEnergy substep_energy_before() const;
     /// Elastic energy at these positions, J.
-    [[nodiscard]] double energy(std::span<const Vec3> position) const;
+    [[nodiscard]] double energy(std::span<const Vec3> position) const { return substep_energy(position).end; }
     /// Plastic flow of what is stressed beyond its yield stress at these positions, with the rotations of the last
     /// linearise(). Returns whether there is a yield stress.
     bool flow(std::span<const Vec3> position);
@@ -79,12 +98,18 @@ private:
     struct Moduli {  ///< Lamé's, Pa
         double mu = 0, lambda = 0;
     };
-    [[nodiscard]] static Mat3 stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
-                                     const Mat3& start_stretch, double damping_rate);
+    /// Elastic strains of tetrahedra or nodes in their axes when this substep and the two before it began.
+    using Past = std::array<std::vector<Mat3>, 3>;
+    [[nodiscard]] Mat3 stress(const Moduli& moduli, const Mat3& deformation, Quat rotation, const Mat3& plastic,
+                              const Past& past, std::size_t index) const;
+    static void add_energy(const Moduli& moduli, double volume, const Mat3& start, const Mat3& end, SubstepEnergy& sum);
+    void add_element_energy(std::size_t element, const Mat3& start, const Mat3& end, SubstepEnergy& sum) const;
+    [[nodiscard]] static double energy_density(const Moduli& moduli, const Mat3& strain);
+    static void shift(Past& past);
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     void limit_strain(Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
-    [[nodiscard]] Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const;
+    [[nodiscard]] Mat3 start_strain(const Mat3& deformation, Quat rotation, const Mat3& plastic) const;
     void find_edges();
     void find_surroundings(std::size_t nodes);
 
@@ -96,13 +121,16 @@ private:
     std::vector<double> volume_;                 ///< m³
     std::vector<Quat> rotation_, node_rotation_;
     std::vector<Mat3> plastic_, node_plastic_;  ///< strains in the axes at rest, without a trace
-    std::vector<Around> around_;                ///< of node i those from first_around_[i] to first_around_[i + 1]
+    Past past_, node_past_;
+    bool is_substep_new_ = true, has_past_ = false, is_second_order_ = false;
+    double damping_rate_ = 0;     ///< β/h of the substep
+    std::vector<Around> around_;  ///< of node i those from first_around_[i] to first_around_[i + 1]
     std::vector<std::uint32_t> first_around_;
     std::vector<double> node_volume_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
 
     // Of the last linearise(), for add_stiffness().
-    std::vector<Mat3> deformation_, start_deformation_, start_stretch_, node_stress_;
+    std::vector<Mat3> deformation_, start_deformation_, node_stress_;
     std::vector<Matrix> rotation_f_, node_rotation_f_, gradient_f_, node_stress_f_;
 };
 

@@ -11,11 +11,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-struct FaceValue {
-    int axis, cell;
-    float value;
-};
-
 // Where a face's centre is.
 Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
     Vec3 center = grid.center(c);
@@ -63,6 +58,21 @@ void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>,
     }
 }
 
+// Gradient of the velocity at a known face, by known neighbours, 1/s.
+Vec3 gradient_at(const FluidGrid& grid, int axis, int cell) {
+    const std::vector<float>& u = grid.velocity[axis];
+    const std::vector<std::uint8_t>& known = grid.known[axis];
+    Vec3 gradient;
+    for (int along = 0; along < 3; ++along) {
+        const int stride = grid.stride(along);
+        const int upper = known[cell + stride] ? cell + stride : cell,
+                  lower = known[cell - stride] ? cell - stride : cell;
+        const int cells = (upper != cell) + (lower != cell);
+        if (cells > 0) gradient[along] = (u[upper] - u[lower]) / (cells * grid.cell_size());
+    }
+    return gradient;
+}
+
 // Velocity at a shut face that slides along the obstacle.
 double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall) {
     const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
@@ -102,6 +112,63 @@ Vec3 velocity_around(const FluidGrid& grid, int axis, int cell) {
             other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
     }
     return velocity;
+}
+
+void find_convection(FluidGrid& grid, double dt, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            grid.for_cells(corner, [&](int cell, const Cell&) {
+                float& convection = grid.convection[axis][cell];
+                convection = 0;
+                if (grid.row[cell] < 0 || grid.row[cell - grid.stride(axis)] < 0) return;
+                const Vec3 gradient = gradient_at(grid, axis, cell);
+                // Paths that turn by a radian in a part are not resolved.
+                const double turn = length(gradient) * dt, resolved = std::max(0.0, 1 - turn * turn);
+                convection = static_cast<float>(dt / 2 * resolved * dot(gradient, velocity_around(grid, axis, cell)));
+            });
+        }
+    });
+}
+
+void find_surface_change(const FluidGrid& grid, std::vector<FaceValue>& change, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    const auto look_at = [&](int axis, int cell, const Cell& c, std::vector<FaceValue>& list) {
+        const auto is_liquid = [&](int face) {
+            return grid.open[axis][face] > 0 && (grid.row[face] >= 0 || grid.row[face - grid.stride(axis)] >= 0);
+        };
+        if (!(grid.mass[axis][cell] > 1e-6f) || grid.open[axis][cell] <= 0 || is_liquid(cell)) return;
+        Vec3 offset;
+        int count = 0;
+        for (int along = 0; along < 3; ++along) {
+            const int upper = is_liquid(cell + grid.stride(along)), lower = is_liquid(cell - grid.stride(along));
+            offset[along] = lower - upper;
+            count += lower + upper;
+        }
+        if (count < 2) return;
+        const Vec3 center = face_center(grid, axis, c);
+        const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+        float gradient[3];
+        (void)sample_center(grid, grid.surface, at, gradient);
+        const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+        offset = (offset - normal * dot(offset, normal)) * (grid.cell_size() / count);
+        list.push_back({axis, cell, static_cast<float>(dot(gradient_at(grid, axis, cell), offset))});
+    };
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
+        auto& list = found[static_cast<std::size_t>(worker)];
+        for (std::size_t i = range.first; i < range.last; ++i) {
+            grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
+                if (grid.row[cell] >= 0) return;
+                for (int axis = 0; axis < 3; ++axis) look_at(axis, cell, c, list);
+            });
+        }
+    });
+    change.clear();
+    for (const auto& list : found) change.insert(change.end(), list.begin(), list.end());
+}
+
+void add_to_faces(FluidGrid& grid, std::span<const FaceValue> change) {
+    for (const FaceValue& face : change) grid.velocity[face.axis][face.cell] += face.value;
 }
 
 void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers) {
@@ -163,9 +230,10 @@ void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const Press
             double sum = 0;
             for (int axis = 0; axis < 3; ++axis) {
                 const int above = cell + grid.stride(axis);
-                const auto &open = grid.open[axis], &velocity = grid.velocity[axis];
-                sum += static_cast<double>(open[above]) * velocity[above];
-                sum -= static_cast<double>(open[cell]) * velocity[cell];
+                const auto& open = grid.open[axis];
+                const auto &velocity = grid.velocity[axis], &convection = grid.convection[axis];
+                sum += static_cast<double>(open[above]) * (velocity[above] - convection[above]);
+                sum -= static_cast<double>(open[cell]) * (velocity[cell] - convection[cell]);
             }
             flow[row] = sum * area;
         }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
@@ -21,6 +23,20 @@ void admit_drops(FluidGrid& grid, TaskPool& workers);
 /// Velocity at a face; the components across are means of the four nearest faces, m/s.
 Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 
+/// Of faces between liquid cells, (dt/2) (u·∇)u: particles go straight for dt, so that their velocity is the one
+/// halfway along a curved path (docs/physics/fluids.md, "Paths").
+void find_convection(FluidGrid& grid, double dt, TaskPool& workers);
+
+/// A value at a face.
+struct FaceValue {
+    int axis, cell;
+    float value;
+};
+
+/// Of the air's faces beside the liquid's, by what the velocity changes along the surface from the middle of those to
+/// the face, m/s (docs/physics/fluids.md, "Surface").
+void find_surface_change(const FluidGrid& grid, std::vector<FaceValue>& change, TaskPool& workers);
+
 /// To what degree the liquid at a face sticks to a wall: axis, cell.
 using Sticking = std::function<double(int, int)>;
 
@@ -29,7 +45,9 @@ using Sticking = std::function<double(int, int)>;
 /// at the surface is the obstacle's.
 void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, const Sticking& sticking, TaskPool& workers);
 
-/// Volume that flows out of each liquid cell by faces and surfaces of obstacles, m³/s.
+void add_to_faces(FluidGrid& grid, std::span<const FaceValue> change);
+
+/// Volume that flows out of each liquid cell by faces, less their convection, and by surfaces of obstacles, m³/s.
 void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
              std::vector<double>& flow, TaskPool& workers);
 

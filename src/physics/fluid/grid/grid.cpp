@@ -133,7 +133,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
         cells *= static_cast<std::size_t>(size_[axis]);
         tiles *= static_cast<std::size_t>(tiles_[axis]);
     }
-    for (auto* arrays : {&velocity, &mass, &open, &shift}) {
+    for (auto* arrays : {&velocity, &mass, &open, &shift, &convection}) {
         for (auto& array : *arrays) array.assign(cells, 0);
     }
     for (auto& array : known) array.assign(cells, 0);

@@ -114,6 +114,7 @@ public:
     std::vector<std::int32_t> row;                   ///< of the pressure's system; -1: not liquid
     std::vector<float> pressure;                     ///< of the last step, Pa
     std::array<std::vector<float>, 3> shift;         ///< displacement of a face against clumping, m
+    std::array<std::vector<float>, 3> convection;    ///< half of what (u·∇)u changes a face by in a part, m/s
     /// Of faces where points are immersed: flow by a difference of the pressure that ends at the surface, and by the
     /// whole one, over that of an open face. Empty where there are none: `open` and 0.
     std::array<std::vector<float>, 3> liquid_conductance, solid_conductance;

@@ -155,7 +155,7 @@ void FluidGrid::clear_tile(const Cell& corner) {
             surface[cell] = 1;
             density[cell] = 0;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                velocity[axis][cell] = mass[axis][cell] = shift[axis][cell] = 0;
+                velocity[axis][cell] = mass[axis][cell] = shift[axis][cell] = convection[axis][cell] = 0;
                 known[axis][cell] = 0;
             }
         }

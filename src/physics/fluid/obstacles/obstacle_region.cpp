@@ -11,6 +11,8 @@ namespace {
 // A surface farther from a cube's centre than this, in half edges, does not cut the cube: √3.
 constexpr double half_diagonal = 1.7320508;
 
+constexpr float on_surface = 1e-3f;  // cells: rounding of floats leaves 1e-6
+
 // Whether a wall is between two places, and not the tip of an edge: a wall's sides face away from each other.
 bool is_walled(const ObstacleProbe& probe, Vec3 a, Vec3 b) {
     // Cosine between the two normals: a wall's sides have −1, an edge of 90° has 0 and blunter ones have more.
@@ -38,6 +40,7 @@ void ObstacleRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell&
     thin_.assign(cells, 0);
     is_cut_.assign(cells, 0);
     any_thin_ = any_cut_ = false;
+    ends_.clear();
 }
 
 bool ObstacleRegion::add(ObstacleProbe& probe) {
@@ -73,14 +76,8 @@ bool ObstacleRegion::add(ObstacleProbe& probe) {
 // outside, and walls around a centre that end before the next one.
 void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
     const double h = grid_->cell_size();
-    constexpr double thickness = 1.9;    // cells: the faces beside a wall of two cells are wholly shut
-    constexpr float on_surface = 1e-3f;  // cells: rounding of floats leaves 1e-6
+    constexpr double thickness = 1.9;   // cells: the faces beside a wall of two cells are wholly shut
     constexpr float max_apart = 1.05f;  // cells: a centre's distance from what is between it and the next, and rounding
-    const auto shut = [&](int axis, int cell) {
-        fraction_[axis][cell] = 1;
-        thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
-        any_thin_ = true;
-    };
     for (int z = 0, cell = 0; z < size_[2]; ++z) {
         for (int y = 0; y < size_[1]; ++y) {
             for (int x = 0; x < size_[0]; ++x, ++cell) {
@@ -93,11 +90,16 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
                     const bool is_thin = probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h);
                     for (int axis = 0; axis < 3; ++axis) {
                         const bool has_both = place[axis] > 0 && place[axis] + 1 < size_[axis];
+                        Vec3 step;
+                        step[axis] = h;
                         const bool is_between = has_both && own_distance_[cell - stride(axis)] > on_surface &&
                                                 own_distance_[cell + stride(axis)] > on_surface;
-                        if (!is_thin && !is_between) continue;
-                        shut(axis, cell);
-                        if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
+                        if (is_thin || (is_between && is_walled(probe, center - step, center + step))) {
+                            shut(axis, cell);
+                            if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
+                        } else if (is_between) {
+                            ends_.push_back({axis, cell});
+                        }
                     }
                     continue;
                 }
@@ -111,6 +113,22 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
                 }
             }
         }
+    }
+}
+
+void ObstacleRegion::shut(int axis, int cell) {
+    fraction_[axis][cell] = 1;
+    thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
+    any_thin_ = true;
+}
+
+// Where a piece of a vessel ends beside the next one it is a wall as elsewhere, but where a box ends in another, as in
+// the corner of a tank, there is no thin wall.
+void ObstacleRegion::shut_ends() {
+    for (const auto& [axis, cell] : ends_) {
+        if (!(distance_[cell - stride(axis)] > on_surface && distance_[cell + stride(axis)] > on_surface)) continue;
+        shut(axis, cell);
+        shut(axis, cell + stride(axis));
     }
 }
 
@@ -139,6 +157,7 @@ void ObstacleRegion::mark_near_thin() {
 }
 
 void ObstacleRegion::finish() {
+    shut_ends();
     if (any_thin_) filled_ = fraction_;
     for (int z = 1; z < size_[2]; ++z) {
         for (int y = 1; y < size_[1]; ++y) {

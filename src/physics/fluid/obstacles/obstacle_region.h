@@ -48,6 +48,8 @@ public:
 
 private:
     void shut_thin(const ObstacleProbe& probe);
+    void shut_ends();
+    void shut(int axis, int cell);
     void mark_near_thin();
     void measure_room();
     [[nodiscard]] int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size_[0] : size_[0] * size_[1]; }
@@ -62,6 +64,7 @@ private:
     std::vector<std::uint8_t> thin_;
     std::vector<std::uint8_t> is_cut_;
     bool any_thin_ = false, any_cut_ = false;
+    std::vector<std::array<int, 2>> ends_;  // axis and cell: inside an obstacle whose edge ends between its neighbours
 };
 
 }  // namespace embody::physics::fluid

@@ -58,7 +58,8 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
     particles_to_grid(grid_, particles_, places_, {particle_fraction(), liquids_}, workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
-            for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
+            for (auto* fields : {&grid_.velocity, &grid_.convection})
+                for (auto& field : *fields) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
     ImmersedPoints::leave(grid_);

@@ -12,6 +12,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
 #include "physics/stages/deformable/body_supports.h"
+#include "physics/stages/deformable/solid_bounces.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
 #include "physics/stages/deformable/thin_groups.h"
@@ -238,6 +239,7 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
                                                    {h, k * h, settings.solid_contact}, world.workers);
         } while (corrections++ < settings.solid.max_corrections && correct_solids(world, moving));
         parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
+        bounce_solids(world, moving.solid_records, moving.contacts, moving.bodies, h, k * h);
         advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
     }
 }
