@@ -73,9 +73,9 @@ TEST(ThingsOnSheets, StandStill) {
             ++steps;
         }
         const Vec3 end = laid.world->pose(laid.thing).position;
-        EXPECT_LT(length(end - start), 1e-4) << seed;
+        EXPECT_LT(length(end - start), 1e-5) << seed;
         // A sheet keeps the contact distance of 1 mm from both.
-        EXPECT_NEAR(end.y, table_height + laid.thing_height + 2e-3, 2e-4) << seed;
+        EXPECT_NEAR(end.y, table_height + laid.thing_height + 2e-3, 1e-5) << seed;
         EXPECT_LT(length(laid.world->linear_velocity(laid.thing)), 1e-3) << seed;
         asleep += laid.world->is_asleep(laid.cloth) ? 1 : 0;
         farthest = std::max(farthest, length(end - start));

@@ -14,7 +14,7 @@ struct ThinContactSettings {
     /// The same over the inertia of the load on a point. Test: Settings.AreNoticed.
     double load_stiffness_factor = 4;
     /// Stiffness of all contacts of a sheet's nodes with a body that moves together, over its inertia. Source:
-    /// docs/physics/cloth.md, "What lies on a sheet": stable from recovery_fraction on. Test:
+    /// docs/physics/cloth.md, "What lies on a sheet": stable where it is above recovery_fraction. Test:
     /// ThingsOnSheets.StandStill.
     double body_stiffness_factor = 100;
     /// The same over the inertia of a body in which a node begins, at that place. Test: Settings.AreNoticed.
@@ -25,9 +25,9 @@ struct ThinContactSettings {
     /// Speed at which a node that begins inside something is pushed out, m/s. Test:
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
     double recovery_speed = 0.2;
-    /// Fraction of an overlap of sheets and ropes that is corrected in a substep. Source: R. Bridson, R. Fedkiw, J.
-    /// Anderson, "Robust treatment of collisions, contact and friction for cloth animation", 2002, correct at most a
-    /// tenth a step. Test: Settings.AreNoticed.
+    /// Fraction of an overlap of sheets and ropes, and of a sheet's nodes with bodies, that is corrected in a substep.
+    /// Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of collisions, contact and friction for cloth
+    /// animation", 2002, correct at most a tenth a step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
     /// Stiffness of a contact of sheets and ropes over that of the softer side's nodes where half the distance that
     /// they keep is left; it grows with depth over distance. Test: Settings.AreNoticed.

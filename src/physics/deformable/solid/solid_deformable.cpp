@@ -129,7 +129,7 @@ void SolidDeformable::push(std::uint32_t node, Vec3 force) {
 void SolidDeformable::solve(TaskPool& workers) {
     is_measured_ = false;
     std::ranges::fill(unsettled_, Vec3{});
-    // r = M (x_old + h u + h² g - x)/h² + f(x, (x - x_old)/h) + pushes
+    // r = M (x_old + h u + h² g - x)/h² + f + pushes, f of x and of the strains before (docs/physics/deformables.md)
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 rate = (nodes_.position[i] - start_[i]) / h_;
         force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate) / h_) + pushes_[i];
@@ -407,7 +407,7 @@ void SolidDeformable::take_turning_energy(RigidMove& move, double excess) const 
 }
 
 // Inner forces neither move nor turn the whole, and outer ones turn it with the arms of the nodes' new places. Rounding
-// and rotations that lag violate that, and backward Euler slows every turn, as Σ m x × u changes with the arms of the
+// and rotations that lag violate that, and the substep slows every turn, as Σ m x × u changes with the arms of the
 // step's end; a small move and turn of the whole corrects this.
 void SolidDeformable::keep_momenta() {
     Vec3 center, new_center;

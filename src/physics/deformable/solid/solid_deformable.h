@@ -129,11 +129,11 @@ private:
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
     double mean_side_ = 0;
-    bool is_free_ = true;                    // no node is pinned
-    bool is_new_ = true;                     // has made no substep yet
-    std::optional<double> energy_at_start_;  // J, of the substep before; none: not measured; come from nowhere so far
-    double kinetic_energy_at_start_ = 0, surplus_ = 0;
-    std::optional<double> found_surplus_;  // by gains_energy(), with no move since: is_measured_
+    bool is_free_ = true;                               // no node is pinned
+    bool is_new_ = true;                                // has made no substep yet
+    std::optional<double> energy_at_start_;             // J, of the substep before; none: not measured
+    double kinetic_energy_at_start_ = 0, surplus_ = 0;  // J; the latter came from nowhere so far
+    std::optional<double> found_surplus_;               // by gains_energy(), with no move since: is_measured_
     bool is_measured_ = false;
 
     // Of the substep.

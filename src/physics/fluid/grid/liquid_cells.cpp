@@ -115,8 +115,8 @@ void fill_gaps(FluidGrid& grid, std::vector<int>& gaps) {
     } while (!layer.empty());
 }
 
-// Thin cells that no way through air leads out of are liquid (docs/physics/fluids.md, "Surface"). Those outside are
-// found from cells with no particle near.
+// Thin cells are liquid that no way leads out of through cells with room (docs/physics/fluids.md, "Surface"). Those
+// outside are found from cells with no particle near.
 void fill_pockets(FluidGrid& grid, const std::vector<int>& thin, float min_room) {
     for (const int cell : thin) grid.surface[cell] = unknown;
     std::vector<int> outside;
@@ -140,7 +140,7 @@ void fill_pockets(FluidGrid& grid, const std::vector<int>& thin, float min_room)
     }
 }
 
-// Narrow cells are liquid beside liquid, those in corners beside such narrow cells; holes with liquid all around are
+// Holes with liquid all around are filled, narrow cells take their surface from around, and pockets in the liquid are
 // filled.
 void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
@@ -199,16 +199,11 @@ void extend_into_immersed(FluidGrid& grid, float min_room) {
         for (const int cell : left) {
             float sum = 0;
             int count = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const int stride = grid.stride(axis);
-                for (const int side : {-1, 1}) {
-                    const int other = cell + side * stride;
-                    const bool is_open = grid.open[axis][side < 0 ? cell : other] > 0;
-                    if (!is_open || grid.surface[other] == unknown) continue;
-                    sum += grid.surface[other];
-                    ++count;
-                }
-            }
+            visit_open_neighbours(grid, cell, [&](int other) {
+                if (grid.surface[other] == unknown) return;
+                sum += grid.surface[other];
+                ++count;
+            });
             if (count > 0) layer.push_back({cell, sum / static_cast<float>(count)});
         }
         mark(grid, layer);

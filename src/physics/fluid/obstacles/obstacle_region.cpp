@@ -123,7 +123,7 @@ void ObstacleRegion::shut(int axis, int cell) {
 }
 
 // Where a piece of a vessel ends beside the next one it is a wall as elsewhere, but where a box ends in another, as in
-// the corner of a tank, there is no thin wall.
+// the corner of a tank, there is no thin wall. (What moves has a region of its own, and sees nothing else.)
 void ObstacleRegion::shut_ends() {
     for (const auto& [axis, cell] : ends_) {
         if (!(distance_[cell - stride(axis)] > on_surface && distance_[cell + stride(axis)] > on_surface)) continue;

@@ -8,6 +8,7 @@
 
 #include "physics/definitions/world_settings.h"
 #include "physics/deformable/contact/free_motion.h"
+#include "physics/stages/deformable/solid_contact_search.h"
 
 namespace embody::physics::stages {
 
@@ -38,7 +39,7 @@ public:
                 const bool is_over = std::ranges::none_of(touches, [&](const Touch& touch) {
                     return touch.solid == s && touch.now.partner == bounce.partner;
                 });
-                if (is_over && bounce.approach > 0) come_back(s, bounce);
+                if (is_over && bounce.approach > 0 && is_there(bounce)) come_back(s, bounce);
                 return is_over;
             });
         }
@@ -56,7 +57,7 @@ private:
             const bool is_second = !has_body && contact.other.solid < contact.point.solid;
             const std::uint32_t solid = is_second ? contact.other.solid : contact.point.solid;
             const std::uint32_t other = has_body ? contact.body : is_second ? contact.point.solid : contact.other.solid;
-            const std::uint64_t partner = has_body ? contact.partner : no_body + std::uint64_t{records_[other]->slot};
+            const std::uint64_t partner = has_body ? contact.partner : first_deformable_partner + records_[other]->slot;
             auto touch = std::ranges::find_if(
                 touches, [&](const Touch& t) { return t.solid == solid && t.now.partner == partner; });
             if (touch == touches.end()) {
@@ -79,7 +80,9 @@ private:
 
     void follow(const Touch& touch) {
         // Slower ones lie there: gravity alone makes half of that in a step.
-        const double min_approach = 2 * length(world_.settings.gravity) * world_.settings.time_step;  // m/s
+        const DeformableRecord& record = *records_[touch.solid];
+        const double min_approach =
+            2 * length(record.acceleration(world_.settings.gravity)) * world_.settings.time_step;  // m/s
         std::vector<SolidBounce>& bounces = records_[touch.solid]->bounces;
         auto bounce = std::ranges::find(bounces, touch.now.partner, &SolidBounce::partner);
         if (bounce == bounces.end()) {
@@ -117,14 +120,22 @@ private:
         double speed = 0;         // of the solid away from the other, m/s
         double inverse_mass = 0;  // of both, there and along the normal, 1/kg
     };
+    [[nodiscard]] static std::uint32_t slot_of(const SolidBounce& bounce) {
+        return static_cast<std::uint32_t>(bounce.has_body ? bounce.partner : bounce.partner - first_deformable_partner);
+    }
+    // A thing that was taken away in the impact throws nothing back.
+    [[nodiscard]] bool is_there(const SolidBounce& bounce) const {
+        const std::uint32_t slot = slot_of(bounce);
+        return bounce.has_body ? world_.rigid.is_used(slot) : world_.deformables.records.used(slot);
+    }
     [[nodiscard]] std::uint32_t index_of_other(const SolidBounce& bounce) const {
         if (bounce.has_body) {
-            const auto slot = static_cast<std::uint32_t>(bounce.partner);
+            const std::uint32_t slot = slot_of(bounce);
             const auto body = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
             return body != bodies_.end() && body->body == slot ? static_cast<std::uint32_t>(body - bodies_.begin())
                                                                : no_body;
         }
-        const auto slot = static_cast<std::uint32_t>(bounce.partner - no_body);
+        const std::uint32_t slot = slot_of(bounce);
         const auto record = std::ranges::lower_bound(records_, slot, {}, &DeformableRecord::slot);
         return record != records_.end() && (*record)->slot == slot
                    ? static_cast<std::uint32_t>(record - records_.begin())

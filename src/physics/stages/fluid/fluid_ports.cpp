@@ -90,7 +90,7 @@ void pour(const FluidAccess& world, FluidPortRecord& record, const FluidSource& 
     const double speed = source.speed > 0 ? source.speed : source.rate / area;
     std::vector<FluidParticle> poured;
     const std::optional<std::uint32_t> first = next_kept_id(*fluid, source);
-    const std::size_t ids_left = first ? source.ids.last - *first : max_fluid_particles;
+    const std::size_t ids_left = first ? std::max(source.ids.last, *first) - *first : max_fluid_particles;
     for (; record.owed >= volume; record.owed -= volume) {
         if (fluid->positions.size() + poured.size() >= source.max_particles || poured.size() >= ids_left) {
             // What waits does not come at once when there is room again.
