@@ -128,9 +128,9 @@ std::vector<double> TouchSprings::loads_of(std::span<const TouchedBody> bodies, 
 }
 
 // With memory, springs below the inertia of what lies on them would let it rock up (docs/physics/cloth.md, "What lies
-// on a sheet"), and so would an overlap that is taken back at once. Where nothing lies the deeper it is, the less of the
-// force that takes it back is remembered, and none where the node has gone through for good: what something else holds
-// in there must not be pushed harder and harder.
+// on a sheet"), and so would an overlap that is taken back at once. Where nothing lies the deeper it is, the less of
+// the force that takes it back is remembered, and none where the node has gone through for good: what something else
+// holds in there must not be pushed harder and harder.
 void TouchSprings::bring_back(const Substep& substep, TouchSpring& spring) const {
     const ThinContactSettings& settings = substep.settings.thin_contact;
     const double load = loads_[spring.node[0]];
