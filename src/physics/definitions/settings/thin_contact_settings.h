@@ -25,9 +25,9 @@ struct ThinContactSettings {
     /// Speed at which a node that begins inside something is pushed out, m/s. Test:
     /// BeginsInside.ARopeBelowTheFloorIsLiftedByItsDepth.
     double recovery_speed = 0.2;
-    /// Fraction of an overlap of sheets and ropes, and of a sheet's nodes with bodies, that is corrected in a substep.
-    /// Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of collisions, contact and friction for cloth
-    /// animation", 2002, correct at most a tenth a step. Test: Settings.AreNoticed.
+    /// Fraction of an overlap of sheets and ropes, and of a sheet's nodes that bear a body, that is corrected in a
+    /// substep. Source: R. Bridson, R. Fedkiw, J. Anderson, "Robust treatment of collisions, contact and friction for
+    /// cloth animation", 2002, correct at most a tenth a step. Test: Settings.AreNoticed.
     double recovery_fraction = 0.2;
     /// Stiffness of a contact of sheets and ropes over that of the softer side's nodes where half the distance that
     /// they keep is left; it grows with depth over distance. Test: Settings.AreNoticed.

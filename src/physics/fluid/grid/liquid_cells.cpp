@@ -55,7 +55,7 @@ bool is_hole(const FluidGrid& grid, int cell, float min_room) {
 bool go_on_into(const FluidGrid& grid, int cell, std::vector<MarkedCell>& marked) {
     constexpr float seam_room = 0.05f;  // of the kernel: liquid with less goes on whatever the cell's room. Walls that
                                         // are flat leave 0.125 where they end a cell. Test: FluidVessels, 23.
-    constexpr float seam_weight = 1e-3f;  // little beside what neighbours with more room have
+    constexpr float seam_weight = 1e-3f;  // of the kernel, as those of others. Without it the same vessel loses 7 %.
     struct Mean {
         float sum = 0, weight = 0;
     } liquid, dry;
