@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
-ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain. The others there were built by hand.
+ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -253,9 +253,27 @@ def basin() -> dict:
     return scene("Tap and drain", "A tap fills a basin, and toys rise with the water. After 14 s a drain empties it. Four buttons open and shut both.", [0.75, 1.95, 1.0], [0, 0.72, 0], entities, actions=actions)
 
 
+def sheet_metal() -> dict:
+    """Two tongues of steel of 0.8 mm, held at one end, and a ball of 3 kg that falls on each: spring steel throws it back, soft steel stays bent.
+
+    E t3 / 12 (1 - nu2) = 9.4 N m at 200 GPa; soft steel yields at 2 * 250 MPa / 200 GPa / 0.8 mm = 3.1 1/m. The stretch stiffness is less than E t,
+    160 MN/m, since nothing here stretches the sheets."""
+    height, length, width = 0.7, 0.3, 0.15
+    entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62])]
+    for side, name, color, limit in ((-1, "Spring steel", [0.45, 0.52, 0.62], {}), (1, "Soft steel", [0.66, 0.64, 0.6], {"bend_yield": 3.1})):
+        z = side * 0.3
+        entities.append(fixed("Clamp", [0.05, height / 2 - 0.001, width + 0.02], [-length + 0.02, height / 2 - 0.001, z], [0.3, 0.32, 0.36]))
+        pins = [{"position": [round(x, 6), 0, round(width * step / 3, 6)], "radius": 0.035} for x in (-length, -length + 0.05) for step in range(-3, 4)]
+        entities.append(box(name, [length, 0.0004, width], [0, height, z], color, pins=pins, category="sheet metal",
+                            attributes={"kind": "cloth", "area_density": 6.3, "thickness": 0.0008, "stretch_stiffness": 1e5, "shear_stiffness": 1e5, "bend_stiffness": 9.4,
+                                        "bend_friction": 0, "cloth_nodes": 250, "friction_static": 0.3, "friction_dynamic": 0.25, **limit}))
+        entities.append(sphere("Ball", 0.045, [0.2, height + 0.6, z], hue(side / 4), attributes={"mass": 3, "restitution": 0.3}))
+    return scene("Sheet metal", "A ball falls on two tongues of steel: one springs back, the other stays bent. The difference is the Fold limit in the panel.", [1.1, 1.25, 1.5], [0, 0.6, 0], entities)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

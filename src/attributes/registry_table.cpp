@@ -259,6 +259,14 @@ void add_soft_and_cloth(Rows& rows) {
                  1e9);
     cloth.number({"bend_stiffness", "C", "Bend stiffness", "Moment per metre width and curvature."}, "N m", 2e-5, 1e-9,
                  1e6);
+    // HB/B of the six denims of table 5 of Journal of Textiles 2016, 4614168: 23 to 54 1/m, 44 in the mean.
+    cloth.number({"bend_friction", "C", "Bending friction",
+                  "Curvature that the friction between its threads holds: more folds stay and it comes to rest sooner. "
+                  "Of woven cloth 20 to 60 (Kawabata's 2HB over 2B)."},
+                 "1/m", 40, 0, 1e6);
+    cloth.number({"bend_yield", "C", "Fold limit",
+                  "Curvature beyond which a fold stays for good, as in paper, foil and sheet metal."},
+                 "1/m", infinity, 0, infinity);
     cloth.whole({"cloth_nodes", "C", "Nodes",
                  "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},
                 1000, 20, 20000);

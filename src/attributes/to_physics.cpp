@@ -261,6 +261,7 @@ Result<physics::DeformableDefinition> soft_solid_from_attributes(const Attribute
 
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy) {
+    constexpr double min_yield = 1e-6;  // 1/m
     const double area = area_of(sheet);
     const Result<double> area_density = spread(attributes, "area_density", area, "m²", "cloth");
     if (!area_density) return area_density.error();
@@ -275,6 +276,8 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     cloth.stretch_stiffness = number_or_standard(attributes, "stretch_stiffness");
     cloth.shear_stiffness = number_or_standard(attributes, "shear_stiffness");
     cloth.bend_stiffness = number_or_standard(attributes, "bend_stiffness");
+    cloth.bend_friction = number_or_standard(attributes, "bend_friction");
+    cloth.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
     cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
     deformable.matter = std::move(cloth);

@@ -243,6 +243,8 @@ TEST(ToPhysics, ClothWeighsWhatItsMassSaysOnAnySheet) {
     EXPECT_DOUBLE_EQ(cloth.area_density, 1.5 / 6);
     EXPECT_EQ(cloth.stretch_stiffness, set.number("stretch_stiffness", -1));
     EXPECT_EQ(cloth.bend_stiffness, set.number("bend_stiffness", -1));
+    EXPECT_EQ(cloth.bend_friction, set.number("bend_friction", 40));
+    EXPECT_EQ(cloth.bend_yield, set.number("bend_yield", std::numeric_limits<double>::infinity()));
     EXPECT_EQ(cloth.thickness, set.number("thickness", -1));
     EXPECT_EQ(cloth.drag_coefficient, set.number("drag_coefficient", -1));
     set.put({"mass", 1e4, {}, {}, "test", AttributeLevel::manual});

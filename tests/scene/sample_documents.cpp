@@ -79,6 +79,7 @@ void fill_entities(Document& document) {
                            .places = {{1.0 / 3, 2, 3, -4, 5e-300, 6}},
                            .plastic_strain = {{0.1, 0.2, 0.3, 0.4, 0.5}},
                            .broken = {1, 7},
+                           .bend = {{30, 0.1, -0.2, 0, 1e-300, 1.0 / 3}},
                            .cell_size = 0.02};
     sphere.linear_velocity = {1, 2, 3};
     sphere.angular_velocity = {0.1, 0, 0};

@@ -27,7 +27,7 @@ DeformableDefinition brick(Vec3 size, std::array<int, 3> cells, double modulus) 
         size, cells, {.density = 200, .youngs_modulus = modulus, .poisson_ratio = 0.2, .rayleigh_damping = 0.02});
 }
 
-const Cloth linen{.area_density = 0.2, .rayleigh_damping = 0.005};
+const Cloth linen{.area_density = 0.2, .rayleigh_damping = 0.005, .bend_friction = 40};
 const Rope cord{.diameter = 0.02, .linear_density = 0.2, .rayleigh_damping = 0.002};
 
 // Without weight: bricks that begin within each other and in bodies, and one that spins fast.

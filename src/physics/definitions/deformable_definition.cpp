@@ -145,7 +145,9 @@ Result<void> check_matter(const DeformableDefinition& definition, const Cloth& c
                        check_number("shear_stiffness", cloth.shear_stiffness, 1e-3, 1e9, "N/m"),
                        check_number("bend_stiffness", cloth.bend_stiffness, 1e-9, 1e6, "N m"),
                        check_number("rayleigh_damping", cloth.rayleigh_damping, 0, 100, "s"),
-                       check_number("drag_coefficient", cloth.drag_coefficient, 0, 10));
+                       check_number("drag_coefficient", cloth.drag_coefficient, 0, 10),
+                       check_number("bend_friction", cloth.bend_friction, 0, 1e6, "1/m"),
+                       check_limit("bend_yield", cloth.bend_yield));
 }
 
 Result<void> check_matter(const DeformableDefinition& definition, const Rope& rope) {

@@ -37,6 +37,9 @@ struct Cloth {
     double bend_stiffness = 2e-5;                         ///< moment per width and curvature, N m, 1e-9 … 1e6
     double rayleigh_damping = 0;                          ///< stiffness-proportional, s, 0 … 100
     double drag_coefficient = 1.2;                        ///< of a flat piece across the air's stream, 0 … 10
+    double bend_friction = 0;  ///< the most that friction between the threads resists bending with, as the curvature
+                               ///< that the bend stiffness resists with as much, 1/m, 0 … 1e6
+    double bend_yield = std::numeric_limits<double>::infinity();  ///< curvature beyond which a fold stays, 1/m, > 0
 };
 
 /// A line of nodes, each joined to the next: rope, cable, thread. Straight at rest.
@@ -109,6 +112,9 @@ struct LastingDeformation {
     /// axes at rest; zz is -(xx + yy). Empty: none.
     std::vector<std::array<double, 5>> plastic_strain;
     std::vector<std::uint32_t> broken_segments;  ///< of a rope, ascending
+    /// Of a sheet's triangles in their order, in 1/m: the curvature that friction holds, then that of folds that stay,
+    /// each as xx, yy and √2 xy in the triangle's plane with x along the warp. Empty: none.
+    std::vector<std::array<double, 6>> bend;
 };
 
 /// Whether every number is finite and in range, every index points to a node, every node belongs to an element and

@@ -198,6 +198,7 @@ LastingDeformation World::lasting_deformation(DeformableHandle deformable) const
     const DeformableRecord* record = state_->deformables.records.find(deformable);
     LastingDeformation lasting;
     if (record != nullptr && record->solid()) lasting.plastic_strain = record->solid()->plastic_strain();
+    if (record != nullptr && record->cloth()) lasting.bend = record->cloth()->bend_memory().state();
     lasting.broken_segments = broken_segments(deformable);
     return lasting;
 }
@@ -205,7 +206,7 @@ LastingDeformation World::lasting_deformation(DeformableHandle deformable) const
 Result<void> World::set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting) {
     DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
-    const auto& [strains, broken] = lasting;
+    const auto& [strains, broken, bend] = lasting;
     const auto* solid = std::get_if<SoftSolid>(&record->definition.matter);
     const std::size_t parts = solid != nullptr ? solid->tetrahedra.size() + record->nodes().size() : 0;
     if (!strains.empty() && strains.size() != parts)
@@ -218,7 +219,12 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
     const std::size_t segments = record->rope() ? record->nodes().size() - 1 : 0;
     if (std::ranges::any_of(broken, [segments](std::uint32_t segment) { return segment >= segments; }))
         return Error{"broken_segments", "has one that is no segment of the rope"};
+    const std::size_t triangles = record->cloth() ? record->cloth()->triangles().size() : 0;
+    if (!bend.empty() && bend.size() != triangles)
+        return Error{"bend", "must be " + std::to_string(triangles) + ", one a triangle of a sheet"};
+    if (!std::ranges::all_of(bend, is_number)) return Error{"bend", "must be finite numbers"};
     if (solid != nullptr) record->solid()->set_plastic_strain(strains);
+    if (record->cloth()) record->cloth()->bend_memory().set_state(bend);
     for (std::uint32_t segment = 0; segment < segments; ++segment)
         record->rope()->set_broken(segment, std::ranges::find(broken, segment) != broken.end());
     wake_up(*record);

@@ -139,7 +139,8 @@ std::size_t outside(const Entity& entity) {
 std::size_t outside(const auto& /*joint, action or heading: little*/) { return 0; }
 
 std::size_t outside(const KeptForm& form) {
-    return outside(form.places.values) + outside(form.plastic_strain.values) + outside(form.broken);
+    return outside(form.places.values) + outside(form.plastic_strain.values) + outside(form.broken) +
+           outside(form.bend.values);
 }
 
 // A kept form is one in memory for all states that have it: it counts where it comes or goes.

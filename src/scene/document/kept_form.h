@@ -23,12 +23,16 @@ struct KeptForm {
     PackedNumbers places;
     PackedNumbers plastic_strain;
     std::vector<std::uint32_t> broken;
+    PackedNumbers bend;
     double cell_size = 0;
     friend bool operator==(const KeptForm&, const KeptForm&) = default;
 };
 
 /// Numbers of plastic strain that a tetrahedron or node has: xx, yy, xy, xz and yz.
 inline constexpr std::size_t numbers_per_strain = 5;
+/// Numbers of what bending leaves that a triangle has: xx, yy and √2 xy of what friction holds, then of folds that
+/// stay.
+inline constexpr std::size_t numbers_per_bend = 6;
 /// m: farthest place from the entity's origin, in each coordinate.
 inline constexpr double max_kept_distance = 1e6;
 
@@ -47,6 +51,11 @@ inline constexpr auto fields_of<KeptForm> = std::tuple{
     saved_when_set("broken", &KeptForm::broken,
                    "of a rope: its broken segments, ascending; segment k is between the nodes "
                    "k and k + 1"),
+    saved_when_set(
+        "bend", &KeptForm::bend,
+        "of a sheet: the curvature that friction holds, xx, yy and √2 xy of each triangle, x along the warp, "
+        "then that of folds that stay",
+        {.unit = "1/m"}),
     saved_when_set("cell_size", &KeptForm::cell_size,
                    "of a liquid: twice the cube root of a drop's volume; 0: no liquid", {0, 1, "m"}),
 };

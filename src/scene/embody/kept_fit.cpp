@@ -87,7 +87,10 @@ KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const Thin
     }
     const auto& sheet = std::get<attributes::SheetMesh>(form);
     add_elements(hash, sheet.triangles);
-    return {.fingerprint = digits(hash), .min_points = sheet.nodes.size(), .max_points = sheet.nodes.size()};
+    return {.fingerprint = digits(hash),
+            .min_points = sheet.nodes.size(),
+            .max_points = sheet.nodes.size(),
+            .triangles = sheet.triangles.size()};
 }
 
 Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
@@ -107,6 +110,11 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
             "kept.plastic_strain",
             "must be of " + std::to_string(fit.strains) + " tetrahedra and nodes, got " + std::to_string(strains),
             as_modelled};
+    const std::size_t bends = kept.bend.values.size() / numbers_per_bend;
+    if (bends != 0 && bends != fit.triangles)
+        return Error{"kept.bend",
+                     "must be of " + std::to_string(fit.triangles) + " triangles, got " + std::to_string(bends),
+                     as_modelled};
     if (!kept.broken.empty() && kept.broken.back() >= fit.segments)
         return Error{"kept.broken", "has a segment that the thing has not, which has " + std::to_string(fit.segments),
                      as_modelled};
@@ -126,14 +134,23 @@ std::vector<Vec3> places_of(const KeptForm& kept) {
     return places;
 }
 
+namespace {
+
+template <std::size_t n>
+std::vector<std::array<double, n>> unpacked(const PackedNumbers& numbers) {
+    std::vector<std::array<double, n>> rows(numbers.values.size() / n);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        std::copy_n(numbers.values.begin() + static_cast<std::ptrdiff_t>(n * i), n, rows[i].begin());
+    return rows;
+}
+
+}  // namespace
+
 physics::LastingDeformation lasting_of(const KeptForm& kept) {
     physics::LastingDeformation lasting;
-    const std::vector<double>& values = kept.plastic_strain.values;
-    for (std::size_t i = 0; i + numbers_per_strain <= values.size(); i += numbers_per_strain) {
-        auto& strain = lasting.plastic_strain.emplace_back();
-        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i), numbers_per_strain, strain.begin());
-    }
+    lasting.plastic_strain = unpacked<numbers_per_strain>(kept.plastic_strain);
     lasting.broken_segments = kept.broken;
+    lasting.bend = unpacked<numbers_per_bend>(kept.bend);
     return lasting;
 }
 
@@ -141,13 +158,6 @@ PackedNumbers packed(const std::vector<Vec3>& places) {
     PackedNumbers numbers;
     numbers.values.reserve(3 * places.size());
     for (const Vec3 place : places) numbers.values.insert(numbers.values.end(), {place.x, place.y, place.z});
-    return numbers;
-}
-
-PackedNumbers packed(const std::vector<std::array<double, numbers_per_strain>>& strains) {
-    PackedNumbers numbers;
-    numbers.values.reserve(numbers_per_strain * strains.size());
-    for (const auto& strain : strains) numbers.values.insert(numbers.values.end(), strain.begin(), strain.end());
     return numbers;
 }
 

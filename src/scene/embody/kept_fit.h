@@ -14,8 +14,9 @@ namespace embody::scene {
 struct KeptFit {
     std::string fingerprint;  ///< hash of what the points are made from, 16 hexadecimal digits; empty: one body
     std::size_t min_points = 1, max_points = 0;
-    std::size_t strains = 0;   ///< tetrahedra and nodes of a soft solid; 0: another matter
-    std::size_t segments = 0;  ///< of a rope
+    std::size_t strains = 0;    ///< tetrahedra and nodes of a soft solid; 0: another matter
+    std::size_t segments = 0;   ///< of a rope
+    std::size_t triangles = 0;  ///< of a sheet
     bool is_liquid = false;
 };
 
@@ -32,6 +33,12 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit);
 std::vector<Vec3> places_of(const KeptForm& kept);  ///< in the entity's frame, m
 physics::LastingDeformation lasting_of(const KeptForm& kept);
 PackedNumbers packed(const std::vector<Vec3>& places);
-PackedNumbers packed(const std::vector<std::array<double, numbers_per_strain>>& strains);
+template <std::size_t n>
+PackedNumbers packed(const std::vector<std::array<double, n>>& rows) {
+    PackedNumbers numbers;
+    numbers.values.reserve(n * rows.size());
+    for (const auto& row : rows) numbers.values.insert(numbers.values.end(), row.begin(), row.end());
+    return numbers;
+}
 
 }  // namespace embody::scene

@@ -35,6 +35,8 @@ const SYNONYMS: Record<string, string> = {
   yield_stress: "plastic dent permanent",
   stretch_stiffness: "elastic stretch stiffness",
   bend_stiffness: "fold drape stiffness",
+  bend_friction: "fold crease swing hysteresis internal friction",
+  bend_yield: "fold crease plastic dent crumple paper foil",
   dynamic_viscosity: "thick runny sticky syrup",
   friction_angle: "heap slope",
   slack: "loose long",

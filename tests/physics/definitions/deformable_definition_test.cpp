@@ -74,6 +74,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
                                        {"stretch_stiffness", &Cloth::stretch_stiffness, 1e-3, 1e9},
                                        {"shear_stiffness", &Cloth::shear_stiffness, 1e-3, 1e9},
                                        {"bend_stiffness", &Cloth::bend_stiffness, 1e-9, 1e6},
+                                       {"bend_friction", &Cloth::bend_friction, 0, 1e6},
                                        {"rayleigh_damping", &Cloth::rayleigh_damping, 0, 100},
                                        {"drag_coefficient", &Cloth::drag_coefficient, 0, 10}});
     check_ranges<Rope>(good_rope(), {{"diameter", &Rope::diameter, 1e-4, 1},
@@ -84,6 +85,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
                                      {"rayleigh_damping", &Rope::rayleigh_damping, 0, 100},
                                      {"slack", &Rope::slack, 0, 10}});
     check_limit<SoftSolid>(good_solid(), "yield_stress", &SoftSolid::yield_stress);
+    check_limit<Cloth>(good_sheet(), "bend_yield", &Cloth::bend_yield);
     check_limit<Rope>(good_rope(), "break_tension", &Rope::break_tension);
 }
 

@@ -89,7 +89,7 @@ struct DeformableScene {
         const FreePart part{&deformable.nodes(), deformable.take_impulses(substep, moves), moves};
         if (deformable.is_free()) keep_momenta(std::span(&part, 1), substep.h, substep.settings.thin_contact);
         deformable.finish(substep, moves, body_moves, bodies);
-        deformable.move_nodes(moves, substep.h);
+        deformable.move_nodes(moves, substep, workers);
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.
     void move_on(TouchedBody& body) const {

@@ -304,7 +304,8 @@ TEST(ClothMesh, DeformationOfALinearMapIsThatMap) {
         EXPECT_NEAR(std::fabs(dot(weft, Vec3{0.2, 0, 0.9})), 0.85, 1e-9);
     }
     EXPECT_NEAR(area, 0.12, 1e-9);
-    const ScalarRows rows = make_bending_rows(sheet.nodes, std::get<Cloth>(sheet.matter));
+    const ScalarRows rows =
+        make_bending_rows(make_bend_elements(sheet.nodes, std::get<Cloth>(sheet.matter)), sheet.nodes.size());
     ASSERT_EQ(rows.start.size(), sheet.nodes.size() + 1);
     for (std::size_t i = 0; i < sheet.nodes.size(); ++i) {
         EXPECT_EQ(rows.column[rows.start[i]], i);

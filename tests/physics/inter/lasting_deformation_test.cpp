@@ -65,6 +65,47 @@ TEST(LastingDeformation, OfAnotherSolidMakesItGoOnAlike) {
     }
 }
 
+// A sheet that was bent and let go: another one in its form goes on alike if it has what bending has left.
+TEST(LastingDeformation, OfAnotherSheetMakesItGoOnAlike) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Random random(seed);
+        const auto world = make_world(weightless());
+        const DeformableDefinition foil = cloth_rectangle(
+            0.3, 0.2, 0.03, {.rayleigh_damping = 0.05, .bend_friction = 20, .bend_yield = random.between(1, 10)});
+        const DeformableHandle bent = world->create_deformable(foil).value();
+        EXPECT_TRUE(world->lasting_deformation(bent).bend.empty());
+        std::vector<Vec3> pushed(foil.nodes.size());
+        for (std::size_t i = 0; i < pushed.size(); ++i) {
+            const double along = foil.nodes[i].x * random.between(0.9, 1.1);
+            pushed[i] = {0, 10 * along * along, 0};
+        }
+        ASSERT_TRUE(world->set_nodes(bent, foil.nodes, pushed));
+        for (int i = 0; i < 240; ++i) world->step();
+        const LastingDeformation lasting = world->lasting_deformation(bent);
+        EXPECT_EQ(lasting.bend.size(), std::get<Cloth>(foil.matter).triangles.size());
+
+        const auto places = world->node_positions(bent);
+        const std::vector<Vec3> form(places.begin(), places.end());
+        double travel[2] = {};
+        for (const bool has_bend : {false, true}) {
+            const auto other = make_world(weightless());
+            const DeformableHandle copy = other->create_deformable(foil).value();
+            if (has_bend) {
+                ASSERT_TRUE(other->set_lasting_deformation(copy, lasting));
+                EXPECT_EQ(other->lasting_deformation(copy).bend, lasting.bend);
+            }
+            ASSERT_TRUE(other->set_nodes(copy, form, std::vector<Vec3>(form.size())));
+            for (int i = 0; i < 30; ++i) other->step();
+            for (std::size_t i = 0; i < form.size(); ++i)
+                travel[has_bend ? 1 : 0] =
+                    std::max(travel[has_bend ? 1 : 0], length(other->node_positions(copy)[i] - form[i]));
+        }
+        RecordProperty("m, with and without " + std::to_string(seed),
+                       std::to_string(travel[1]) + " " + std::to_string(travel[0]));
+        EXPECT_GT(travel[0], 10 * travel[1]);
+    }
+}
+
 TEST(LastingDeformation, ThatIsWrongIsRefusedAndChangesNothing) {
     const auto world = make_world();
     const DeformableHandle solid = world->create_deformable(clay_box()).value();
@@ -76,8 +117,9 @@ TEST(LastingDeformation, ThatIsWrongIsRefusedAndChangesNothing) {
     lasting.plastic_strain.assign(parts, {0, 0, 0, 0, std::numeric_limits<double>::quiet_NaN()});
     EXPECT_EQ(world->set_lasting_deformation(solid, lasting).error().where, "plastic_strain");
     EXPECT_EQ(world->set_lasting_deformation(rope, lasting).error().where, "plastic_strain");
-    EXPECT_EQ(world->set_lasting_deformation(rope, {{}, {10}}).error().where, "broken_segments");
-    EXPECT_EQ(world->set_lasting_deformation(solid, {{}, {0}}).error().where, "broken_segments");
+    EXPECT_EQ(world->set_lasting_deformation(rope, {{}, {10}, {}}).error().where, "broken_segments");
+    EXPECT_EQ(world->set_lasting_deformation(solid, {{}, {0}, {}}).error().where, "broken_segments");
+    EXPECT_EQ(world->set_lasting_deformation(solid, {{}, {}, {{}}}).error().where, "bend");
     EXPECT_TRUE(world->lasting_deformation(solid).plastic_strain.empty());
     EXPECT_TRUE(world->broken_segments(rope).empty());
 

@@ -53,6 +53,7 @@ TEST(KeptFormFile, IsReadAsWritten) {
             form.places.values.push_back(std::ldexp(random.between(-1, 1), static_cast<int>(random.below(40)) - 30));
         for (std::size_t k = 5 * random.below(20); k > 0; --k)
             form.plastic_strain.values.push_back(random.between(-0.5, 0.5));
+        for (std::size_t k = 6 * random.below(20); k > 0; --k) form.bend.values.push_back(random.between(-50, 50));
         for (std::uint32_t k = 0; k < random.below(5); ++k) form.broken.push_back(3 * k);
         Document document = samples::floor_and_box();
         document.entities[1].kept = form;
@@ -111,6 +112,8 @@ TEST(KeptFormFile, ThatIsBrokenIsRefusedByField) {
         {with("places", packed({1, 2e6, 3})), "kept.places"},
         {with("plastic_strain", packed({1, 2, 3, 4})), "kept.plastic_strain"},
         {with("plastic_strain", packed({1, 2, 3, 4, std::nan("")})), "kept.plastic_strain"},
+        {with("bend", packed({1, 2, 3, 4, 5})), "kept.bend"},
+        {with("bend", packed({1, 2, 3, 4, 5, std::nan("")})), "kept.bend"},
         {with("broken", {3, 2}), "kept.broken"},
         {with("broken", {1.5}), "kept.broken[0]"},
         {with("broken", {-1}), "kept.broken[0]"},
@@ -161,6 +164,7 @@ TEST(KeptFormFile, ThatBelongsToAnotherMeshIsLeftOutWithANote) {
     expect_note("fingerprint", "0123456789abcdef", "kept.fingerprint");
     expect_note("places", a_form(random, 10)["places"], "kept.places");
     expect_note("plastic_strain", packed({0, 0, 0, 0, 0}), "kept.plastic_strain");
+    expect_note("bend", packed({0, 0, 0, 0, 0, 0}), "kept.bend");
     expect_note("broken", {1}, "kept.broken");
     expect_note("cell_size", 0.1, "kept.cell_size");
 }
@@ -188,6 +192,7 @@ TEST(KeptFormFile, OfWildNumbersIsSimulatedAndStaysFinite) {
             KeptForm wild = *before->kept_form(thing);
             for (double& number : wild.places.values) number = random.between(-extent, extent);
             for (double& number : wild.plastic_strain.values) number = random.between(-extent, extent);
+            for (double& number : wild.bend.values) number = random.between(-extent, extent);
             document.entities[1].kept = wild;
             const auto made = samples::make(document);
             ASSERT_TRUE(made);

@@ -52,8 +52,8 @@ public:
     }
     void change(SharedOptional<KeptForm>& value) {
         KeptForm form{.fingerprint = "0123456789abcdef", .broken = {1, 5}, .cell_size = random_.unit()};
-        for (PackedNumbers* numbers : {&form.places, &form.plastic_strain})
-            for (int i = 0; i < 15; ++i) numbers->values.push_back(random_.between(-1, 1));
+        for (PackedNumbers* numbers : {&form.places, &form.plastic_strain, &form.bend})
+            for (int i = 0; i < 30; ++i) numbers->values.push_back(random_.between(-1, 1));
         value = form;
     }
     void change(std::vector<Pin>& value) {

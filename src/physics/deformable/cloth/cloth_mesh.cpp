@@ -22,11 +22,11 @@ Edge edge_between(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), st
 
 double cotangent(Vec3 a, Vec3 b) { return dot(a, b) / length(cross(a, b)); }
 
-// Length times angle of the fold at an edge between two triangles, along the normal: Σ weight x.
-struct Hinge {
-    std::array<std::uint32_t, 4> node;
-    std::array<double, 4> weight;
-    int sides = 0;  // 1: a free edge
+// A fold, or a free edge.
+struct MeshEdge {
+    BendHinge hinge;
+    int sides = 0;            // 1: a free edge
+    std::uint32_t index = 0;  // of the hinge among those of two sides
 };
 
 // The triangle's corner k, seen from the edge that it does not touch.
@@ -35,30 +35,30 @@ struct Side {
     double cot_first = 0, cot_second = 0;  // of the angles at the edge's ends
 };
 
-using Hinges = std::map<Edge, Hinge>;
+using EdgeMap = std::map<Edge, MeshEdge>;
 
 Side side_of(const std::vector<Vec3>& nodes, Edge edge, std::uint32_t opposite) {
     const Vec3 a = nodes[edge.first], b = nodes[edge.second], c = nodes[opposite];
     return {opposite, cotangent(b - a, c - a), cotangent(a - b, c - b)};
 }
 
-Hinges find_hinges(const std::vector<Vec3>& nodes, const Cloth& cloth) {
-    Hinges hinges;
+EdgeMap find_edges(const std::vector<Vec3>& nodes, const Cloth& cloth) {
+    EdgeMap edges;
     for (const auto& triangle : cloth.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const Edge edge = edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
-            Hinge& hinge = hinges[edge];
-            if (++hinge.sides > 2) continue;  // where three sheets meet the first two are one sheet
-            const Side side = side_of(nodes, edge, triangle[k]);
-            if (hinge.sides == 1) hinge = {{edge.first, edge.second, side.opposite, side.opposite}, {0, 0, 0, 0}, 1};
+            const Edge ends = edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
+            auto& [hinge, sides, index] = edges[ends];
+            if (++sides > 2) continue;  // where three sheets meet the first two are one sheet
+            const Side side = side_of(nodes, ends, triangle[k]);
+            if (sides == 1) hinge = {{ends.first, ends.second, side.opposite, side.opposite}, {0, 0, 0, 0}};
             // c03 + c04, c01 + c02, -c01 - c03, -c02 - c04 in the paper's names
             hinge.weight[0] += side.cot_second;
             hinge.weight[1] += side.cot_first;
-            hinge.node[static_cast<std::size_t>(hinge.sides + 1)] = side.opposite;
-            hinge.weight[static_cast<std::size_t>(hinge.sides + 1)] = -side.cot_first - side.cot_second;
+            hinge.node[static_cast<std::size_t>(sides + 1)] = side.opposite;
+            hinge.weight[static_cast<std::size_t>(sides + 1)] = -side.cot_first - side.cot_second;
         }
     }
-    return hinges;
+    return edges;
 }
 
 // n nᵀ of an edge's normal in the triangle's plane, as a vector whose product is that of the tensors: xx, yy, √2 xy.
@@ -78,7 +78,7 @@ std::array<Vec3, 2> axes_of(Vec3 a, Vec3 b, Vec3 c) {
 
 using Pairs = std::map<Edge, double>;  // of the upper half and the diagonal
 
-void add_product(const Hinge& a, const Hinge& b, double factor, Pairs& pairs) {
+void add_product(const BendHinge& a, const BendHinge& b, double factor, Pairs& pairs) {
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = 0; k < 4; ++k) {
             // Both (a, b) and (b, a) occur: each ordered pair of nodes once, its mirror image in the other triangle.
@@ -87,33 +87,31 @@ void add_product(const Hinge& a, const Hinge& b, double factor, Pairs& pairs) {
     }
 }
 
-// Energy of one triangle: ½ A |Λ|², Λ = (1 / 2A) Σ_e r_e n_e n_eᵀ, with r_e = Σ weight x of its edges' hinges.
-void add_triangle(const std::vector<Vec3>& nodes, const std::array<std::uint32_t, 3>& triangle, const Hinges& hinges,
-                  Pairs& pairs) {
-    const Vec3 a = nodes[triangle[0]], b = nodes[triangle[1]], c = nodes[triangle[2]];
-    const double area = length(cross(b - a, c - a)) / 2;
+// Λ = (1 / 2A) Σ_e r_e n_e n_eᵀ, less its part that free edges take away.
+BendTriangle bend_triangle(const std::vector<Vec3>& nodes, const std::array<std::uint32_t, 3>& corners,
+                           const EdgeMap& edges) {
+    const Vec3 a = nodes[corners[0]], b = nodes[corners[1]], c = nodes[corners[2]];
+    BendTriangle triangle;
+    triangle.area = length(cross(b - a, c - a)) / 2;
     const auto [u, v] = axes_of(a, b, c);
-    std::array<const Hinge*, 3> hinge;
-    std::array<Vec3, 3> tensor, free_part;
+    std::array<Vec3, 3> free_part;
     std::size_t free_count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t first = triangle[(k + 1) % 3], second = triangle[(k + 2) % 3];
-        hinge[k] = &hinges.at(edge_between(first, second));
-        tensor[k] = tensor_of(nodes[second] - nodes[first], u, v);
-        if (hinge[k]->sides > 1) continue;
-        Vec3 part = tensor[k];
+        const std::uint32_t first = corners[(k + 1) % 3], second = corners[(k + 2) % 3];
+        const MeshEdge& edge = edges.at(edge_between(first, second));
+        triangle.part[k] = tensor_of(nodes[second] - nodes[first], u, v);
+        if (edge.sides > 1) {
+            triangle.hinge[k] = edge.index;
+            continue;
+        }
+        Vec3 part = triangle.part[k];
         for (std::size_t f = 0; f < free_count; ++f) part -= dot(part, free_part[f]) * free_part[f];
         free_part[free_count++] = normalized(part);
     }
-    for (Vec3& t : tensor) {
-        for (std::size_t f = 0; f < free_count; ++f) t -= dot(t, free_part[f]) * free_part[f];
+    for (Vec3& part : triangle.part) {
+        for (std::size_t f = 0; f < free_count; ++f) part -= dot(part, free_part[f]) * free_part[f];
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (hinge[i]->sides > 1 && hinge[k]->sides > 1)
-                add_product(*hinge[i], *hinge[k], dot(tensor[i], tensor[k]) / (4 * area), pairs);
-        }
-    }
+    return triangle;
 }
 
 }  // namespace
@@ -134,19 +132,38 @@ std::vector<ClothTriangle> make_cloth_triangles(const std::vector<Vec3>& nodes, 
     return triangles;
 }
 
-ScalarRows make_bending_rows(const std::vector<Vec3>& nodes, const Cloth& cloth) {
-    const Hinges hinges = find_hinges(nodes, cloth);
+BendElements make_bend_elements(const std::vector<Vec3>& nodes, const Cloth& cloth) {
+    EdgeMap edges = find_edges(nodes, cloth);
+    BendElements elements;
+    for (auto& [ends, edge] : edges) {
+        if (edge.sides < 2) continue;
+        edge.index = static_cast<std::uint32_t>(elements.hinges.size());
+        elements.hinges.push_back(edge.hinge);
+    }
+    for (const auto& triangle : cloth.triangles) elements.triangles.push_back(bend_triangle(nodes, triangle, edges));
+    return elements;
+}
+
+ScalarRows make_bending_rows(const BendElements& elements, std::size_t nodes) {
     Pairs pairs;
-    for (std::uint32_t i = 0; i < nodes.size(); ++i) pairs[{i, i}] = 0;
-    for (const auto& triangle : cloth.triangles) add_triangle(nodes, triangle, hinges, pairs);
+    for (std::uint32_t i = 0; i < nodes; ++i) pairs[{i, i}] = 0;
+    for (const auto& [hinge, part, area] : elements.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (hinge[i] != BendTriangle::no_hinge && hinge[k] != BendTriangle::no_hinge)
+                    add_product(elements.hinges[hinge[i]], elements.hinges[hinge[k]],
+                                dot(part[i], part[k]) / (4 * area), pairs);
+            }
+        }
+    }
 
     ScalarRows rows;
-    rows.start.assign(nodes.size() + 1, 0);
+    rows.start.assign(nodes + 1, 0);
     for (const auto& [pair, value] : pairs) {
         ++rows.start[pair.first + 1];
         if (pair.second != pair.first) ++rows.start[pair.second + 1];
     }
-    for (std::size_t i = 0; i < nodes.size(); ++i) rows.start[i + 1] += rows.start[i];
+    for (std::size_t i = 0; i < nodes; ++i) rows.start[i + 1] += rows.start[i];
     rows.column.resize(rows.start.back());
     rows.value.resize(rows.start.back());
     std::vector<std::uint32_t> next(rows.start.begin(), rows.start.end() - 1);
@@ -154,7 +171,7 @@ ScalarRows make_bending_rows(const std::vector<Vec3>& nodes, const Cloth& cloth)
         rows.column[next[row]] = column;
         rows.value[next[row]++] = value;
     };
-    for (std::uint32_t i = 0; i < nodes.size(); ++i) put(i, i, pairs.at({i, i}));
+    for (std::uint32_t i = 0; i < nodes; ++i) put(i, i, pairs.at({i, i}));
     for (const auto& [pair, value] : pairs) {
         if (pair.first == pair.second) continue;
         put(pair.first, pair.second, value);

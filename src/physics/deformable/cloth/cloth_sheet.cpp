@@ -17,6 +17,12 @@ namespace embody::physics::deformable {
 
 namespace {
 
+// A plate that swings in a fluid with the amplitude X has 4 KC^(-1/3) times the drag of a steady stream, KC = 2π X/D,
+// by the vortices that grow at its edges of each swing (J. M. R. Graham, "The forces on sharp-edged cylinders in
+// oscillatory flow at low Keulegan-Carpenter numbers", 1980; 8 KC^(-1/3), beside the 2 of a steady stream). With the
+// travel s since the last turn in the place of X this factor of (D/s)^(1/3) takes as much energy a swing.
+constexpr double young_vortex_drag = 2.02;
+
 constexpr std::uint32_t not_far = ~std::uint32_t{0};  // of elements that lie near or on the diagonal
 
 Mat3 symmetric_outer(Vec3 a) { return outer(a, a); }
@@ -36,12 +42,30 @@ void make_positive(double& a, double& b, double& c) {
     b = high * b / radius / 2;
 }
 
+// Twice the area over the length of the hems, m: of a strip its width. Of a sheet without hems the root of its area.
+double mean_width(const std::vector<ClothTriangle>& triangles, const BendElements& bend,
+                  const std::vector<Vec3>& nodes) {
+    double area = 0, hems = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        area += triangles[t].area;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (bend.triangles[t].hinge[k] == BendTriangle::no_hinge)
+                hems += length(nodes[triangles[t].node[(k + 1) % 3]] - nodes[triangles[t].node[(k + 2) % 3]]);
+        }
+    }
+    return hems > 0 ? 2 * area / hems : std::sqrt(area);
+}
+
 }  // namespace
 
 ClothSheet::ClothSheet(const DeformableDefinition& definition)
+    : ClothSheet(definition, make_bend_elements(definition.nodes, std::get<Cloth>(definition.matter))) {}
+
+ClothSheet::ClothSheet(const DeformableDefinition& definition, const BendElements& bend)
     : cloth_(std::get<Cloth>(definition.matter)),
       triangles_(make_cloth_triangles(definition.nodes, cloth_)),
-      bending_(make_bending_rows(definition.nodes, cloth_)) {
+      bending_(make_bending_rows(bend, definition.nodes.size())),
+      bend_memory_(bend, definition.nodes.size(), cloth_.bend_friction, cloth_.bend_yield) {
     const std::size_t count = definition.nodes.size();
     nodes_.mass.assign(count, 0);
     for (const ClothTriangle& triangle : triangles_) {
@@ -67,6 +91,8 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition)
     }
     nodes_.velocity = nodes_.mean_velocity;
     for (double& value : bending_.value) value *= cloth_.bend_stiffness;
+    air_travel_.assign(triangles_.size(), 0);
+    width_ = mean_width(triangles_, bend, definition.nodes);
     springs_.radius = definition.contact_radius;
     springs_.material = definition.material;
     springs_.attachments = definition.attachments;
@@ -197,11 +223,45 @@ void ClothSheet::find_strains(const Substep& substep, std::span<const Vec3> move
             winds_[t] = substep.wind.at((nodes_.position[triangle.node[0]] + nodes_.position[triangle.node[1]] +
                                          nodes_.position[triangle.node[2]]) /
                                         3);
-            const double through = std::fabs(dot(velocity - winds_[t], normal));
-            air_[t] = std::sqrt(substep.air_density * cloth_.drag_coefficient * triangle.area * through / 6) * normal;
+            const double through = dot(velocity - winds_[t], normal);
+            const double drag = cloth_.drag_coefficient * young_drag(t, substep.h * through);
+            air_[t] = std::sqrt(substep.air_density * drag * triangle.area * std::fabs(through) / 6) * normal;
         }
     };
     parallel_for(workers, triangles_.size(), triangles_.size() >= 1000, work);
+}
+
+Vec3 ClothSheet::normal_of(const ClothTriangle& triangle, std::span<const Vec3> moves) const {
+    const Images images = images_of(triangle, moves);
+    return normalized(cross(images.f, images.g));
+}
+
+// What friction and folds do about these moves, or those of the present velocity.
+void ClothSheet::foresee_bending(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
+    if (!bend_memory_.is_active()) return;
+    friction_stiffness_ = substep.settings.cloth.friction_stiffness;
+    foreseen_.assign(moves.begin(), moves.end());
+    if (moves.empty()) {
+        for (const Vec3 velocity : nodes_.mean_velocity) foreseen_.push_back(substep.h * velocity);
+    }
+    normals_.resize(triangles_.size());
+    parallel_for(workers, normals_.size(), normals_.size() >= 1000, [&](int, IndexRange range) {
+        for (std::size_t t = range.first; t < range.last; ++t)
+            normals_[t] = {normal_of(triangles_[t], {}), normal_of(triangles_[t], foreseen_)};
+    });
+    bend_memory_.foresee(nodes_.position, foreseen_, normals_, friction_stiffness_, workers);
+}
+
+// Travel through the air since it last turned round, m, with what comes to it.
+double ClothSheet::travel_with(std::size_t triangle, double added) const {
+    const double travel = air_travel_[triangle];
+    return travel * added < 0 ? added : travel + added;
+}
+
+// Drag over that in a steady stream.
+double ClothSheet::young_drag(std::size_t triangle, double added) const {
+    const double travel = std::fabs(travel_with(triangle, added));
+    return travel > 0 ? std::max(1.0, young_vortex_drag * std::cbrt(width_ / travel)) : 1;
 }
 
 // `near`: to work with.
@@ -209,6 +269,7 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
     const double h = substep.h, damping = cloth_.rayleigh_damping / h, damped = 1 + damping;
     const double damping_stretch = damping * cloth_.stretch_stiffness, shear = damped * cloth_.shear_stiffness;  // N/m
     const double inertia = nodes_.mass[i] / (h * h);
+    const double friction = bend_memory_.added_stiffness(friction_stiffness_), bent = damped + friction;
     Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
     Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
 
@@ -220,15 +281,17 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
     const std::size_t first = matrix_.near_first(i);
     near.resize(matrix_.near_first(i + 1) - first);
     for (std::size_t k = 0; k < near.size(); ++k) {
-        const double b = damped * near_bending_[first + k];
+        const double b = bent * near_bending_[first + k];
         near[k] = to_block(Mat3::diagonal({b, b, b}));
     }
     for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k) {
         load -= bending_.value[k] * nodes_.position[bending_.column[k]];
-        if (bending_.column[k] == i) own += damped * bending_.value[k] * Mat3::identity();
+        if (friction > 0) load += friction * bending_.value[k] * foreseen_[bending_.column[k]];
+        if (bending_.column[k] == i) own += bent * bending_.value[k] * Mat3::identity();
         if (far_element_[k] != not_far)
-            matrix_.set_far(i, far_element_[k], static_cast<float>(damped * bending_.value[k]));
+            matrix_.set_far(i, far_element_[k], static_cast<float>(bent * bending_.value[k]));
     }
+    if (bend_memory_.is_active()) load += cloth_.bend_stiffness * bend_memory_.force_on(i);
     for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
         const Corner& corner = corners_[c];
         const ClothTriangle& triangle = triangles_[corner.triangle];
@@ -305,6 +368,7 @@ std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskP
 
 void ClothSheet::linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
     find_strains(substep, moves, workers);
+    foresee_bending(substep, moves, workers);
     fill_rows(substep, workers);
 }
 
@@ -344,9 +408,28 @@ void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span
     springs_.finish(moves, body_moves, substep, bodies);
 }
 
-void ClothSheet::move_nodes(std::span<const Vec3> moves, double h) {
-    set_velocities(nodes_, moves, h);
+void ClothSheet::move_nodes(std::span<const Vec3> moves, const Substep& substep, TaskPool& workers) {
+    set_velocities(nodes_, moves, substep.h);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        Vec3 added = -substep.h * winds_[t];
+        for (const std::uint32_t node : triangles_[t].node) added += moves[node] / 3;
+        air_travel_[t] = travel_with(t, dot(added, normal_of(triangles_[t], {})));
+    }
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves[i];
+    if (bend_memory_.is_active()) bend_memory_.keep(nodes_.position, normals(), friction_stiffness_, workers);
+}
+
+// Of all triangles.
+std::vector<Vec3> ClothSheet::normals() const {
+    std::vector<Vec3> normals;
+    for (const ClothTriangle& triangle : triangles_) normals.push_back(normal_of(triangle, {}));
+    return normals;
+}
+
+void ClothSheet::go_on_from(const ClothSheet& other) {
+    springs_.go_on_from(other.springs_);
+    const std::vector<std::array<double, 6>> kept = other.bend_memory_.state();
+    if (bend_memory_.is_active() && kept.size() == triangles_.size()) bend_memory_.set_state(kept);
 }
 
 double ClothSheet::elastic_energy() const {
@@ -356,6 +439,8 @@ double ClothSheet::elastic_energy() const {
         for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k)
             energy += bending_.value[k] / 2 * dot(nodes_.position[i], nodes_.position[bending_.column[k]]);
     }
+    if (bend_memory_.is_active())
+        energy += cloth_.bend_stiffness * bend_memory_.energy(nodes_.position, normals(), friction_stiffness_);
     return energy;
 }
 

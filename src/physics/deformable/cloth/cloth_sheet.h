@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "foundation/task_pool.h"
+#include "physics/deformable/cloth/bend_memory.h"
 #include "physics/deformable/cloth/cloth_layers.h"
 #include "physics/deformable/cloth/cloth_mesh.h"
 #include "physics/deformable/cloth/cloth_solver.h"
@@ -49,8 +50,8 @@ public:
     /// What weight, air and liquids give each node in a substep with these moves, N s; notes what the liquids give.
     /// Before finish(), once.
     std::vector<Vec3> take_impulses(const Substep& substep, std::span<const Vec3> moves);
-    /// Moves the nodes by these moves (m) in h seconds.
-    void move_nodes(std::span<const Vec3> moves, double h);
+    /// Moves the nodes by these moves (m): the end of the substep.
+    void move_nodes(std::span<const Vec3> moves, const Substep& substep, TaskPool& workers);
     /// Stops it for good where it is.
     void freeze();
     /// Each edge of its triangles once.
@@ -63,9 +64,13 @@ public:
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
-    /// Present energies, J. Contacts are taken over from another sheet of as many nodes.
-    void go_on_from(const ClothSheet& other) { springs_.go_on_from(other.springs_); }
+    /// Takes contacts over from another sheet of as many nodes, and what bending has left where its triangles are as
+    /// many, too.
+    void go_on_from(const ClothSheet& other);
+    /// Present energy of stretch, shear and bending, and of its friction, J.
     [[nodiscard]] double elastic_energy() const;
+    [[nodiscard]] BendMemory& bend_memory() { return bend_memory_; }
+    [[nodiscard]] const BendMemory& bend_memory() const { return bend_memory_; }
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     /// True once a number was none: it stays where it last was.
@@ -94,7 +99,13 @@ private:
     [[nodiscard]] Images stress_change(const Strain& strain, const Images& change) const;
     [[nodiscard]] double energy_of(const Images& images) const;
 
+    ClothSheet(const DeformableDefinition& definition, const BendElements& bend);
     void make_pattern(const ScalarRows& bending);
+    [[nodiscard]] Vec3 normal_of(const ClothTriangle& triangle, std::span<const Vec3> moves) const;
+    [[nodiscard]] std::vector<Vec3> normals() const;
+    [[nodiscard]] double travel_with(std::size_t triangle, double added) const;
+    [[nodiscard]] double young_drag(std::size_t triangle, double added) const;
+    void foresee_bending(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     void find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
@@ -105,12 +116,15 @@ private:
     Nodes nodes_;
     std::vector<ClothTriangle> triangles_;
     ScalarRows bending_;  // times bend stiffness, N/m
+    BendMemory bend_memory_;
     ClothMatrix matrix_;
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
     std::vector<double> near_bending_;        // of the blocks between neighbours
     std::vector<std::uint32_t> far_element_;  // of bending_'s elements: the index of each among the row's far elements
     TouchSprings springs_;
+    double width_ = 0;                // twice the area over the length of its hems, m
+    std::vector<double> air_travel_;  // of each triangle through the air along its normal since it last turned round, m
     std::optional<ClothLayers> layers_;
     std::vector<std::uint8_t> fixed_;
 
@@ -118,6 +132,9 @@ private:
     std::vector<Strain> strains_;
     std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
     std::vector<double> node_stiffness_, unforeseen_;
+    double friction_stiffness_ = ClothSettings{}.friction_stiffness;
+    std::vector<Vec3> foreseen_;  // moves about which bend_memory_ was asked
+    std::vector<std::array<Vec3, 2>> normals_;
     bool is_frozen_ = false;
 };
 

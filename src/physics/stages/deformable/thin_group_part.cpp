@@ -515,7 +515,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     for (Member& member : members_) {
         const std::span<const Vec3> moves = part(moves_, member);
         if (ClothSheet* sheet = member.record().cloth()) {
-            sheet->move_nodes(moves, h_);
+            sheet->move_nodes(moves, member.substep, world_.workers);
             continue;
         }
         RopeLine* rope = member.record().rope();

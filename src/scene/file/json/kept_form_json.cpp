@@ -72,6 +72,8 @@ void check_value(FieldReader& reader, const KeptForm& kept) {
         return reader.refuse("places", "must be between -1e+06 and 1e+06 m");
     if (kept.plastic_strain.values.size() % numbers_per_strain != 0)
         return reader.refuse("plastic_strain", "must be five numbers each: xx, yy, xy, xz, yz");
+    if (kept.bend.values.size() % numbers_per_bend != 0)
+        return reader.refuse("bend", "must be six numbers each: xx, yy and √2 xy of friction, then of folds");
     if (!std::ranges::is_sorted(kept.broken)) reader.refuse("broken", "must be ascending");
 }
 
