@@ -396,7 +396,7 @@ TEST_F(TouchedMatter, TwoHandsCarryACloth) {
     EXPECT_LT(highest(-1), 0.95);
     session_->forget_client(ann);
     step(90);
-    EXPECT_LT(highest(1), 0.3);
+    EXPECT_LT(highest(1), 0.5) << "it lies on the floor in folds, which hold themselves up";
 }
 
 // Events ------------------------------------------------------------------------------------------------------------
