@@ -217,6 +217,8 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     system_.build(grid_, settings_, workers);
     find_convection(grid_, dt, workers);
     find_surface_change(grid_, surface_change_, workers);
+    // Before gravity: what the liquid falls by until the pressure stops it is no motion along walls.
+    apply_wall_friction(grid_, obstacles_, liquids_, dt, workers);
     accelerate(gravity * dt, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {liquids_, is_tense_, settings_.components});
     const double density = properties().density;
@@ -225,7 +227,6 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     const auto resists = [&](const FluidProperties& of) { return is_viscous(of, settings_.viscosity, h, dt); };
     if (std::ranges::any_of(liquids_.liquids(), resists)) shear(dt, outcome, workers);
-    apply_wall_friction(grid_, obstacles_, liquids_, dt, workers);
     for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, density, gravity, moving);
     immersed_.predict(dt, grid_);
     project(dt, outcome, workers);
