@@ -217,6 +217,8 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     system_.build(grid_, settings_, workers);
     find_convection(grid_, dt, workers);
     find_surface_change(grid_, surface_change_, workers);
+    // Before gravity: what the liquid falls by until the pressure stops it is no motion along walls.
+    apply_wall_friction(grid_, obstacles_, liquids_, dt, workers);
     accelerate(gravity * dt, workers);
     components_.begin(grid_, system_, obstacles_, immersed_, particles_, {liquids_, is_tense_, settings_.components});
     const double density = properties().density;
@@ -225,7 +227,6 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     for (std::size_t row = 0; row < system_.size(); ++row) impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     const auto resists = [&](const FluidProperties& of) { return is_viscous(of, settings_.viscosity, h, dt); };
     if (std::ranges::any_of(liquids_.liquids(), resists)) shear(dt, outcome, workers);
-    apply_wall_friction(grid_, obstacles_, liquids_, dt, workers);
     for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, density, gravity, moving);
     immersed_.predict(dt, grid_);
     project(dt, outcome, workers);
@@ -378,35 +379,6 @@ void FluidSolver::push_obstacles(std::span<const double> impulse, double dt) {
         moving.obstacle->angular_impulse += push.angular + films.angular;
         release_liquid(moving);
     }
-}
-
-// Displacements that bring the density back to one: A q = (density − room), shift = −h ∂q (docs/physics/fluids.md,
-// "Volume"; after T. Kugelstadt and others, "Implicit density projection for volume conserving liquids", 2019).
-void FluidSolver::spread_out(TaskPool& workers) {
-    EMBODY_ZONE("solve volume");
-    const double fraction = settings_.volume.correction_fraction, most = settings_.volume.max_error;
-    const double tolerance = fraction * settings_.volume.tolerance;
-    potential_.assign(system_.size(), 0);
-    flow_.resize(system_.size());
-    for (std::size_t row = 0; row < system_.size(); ++row) {
-        const auto cell = static_cast<int>(system_.cell(row));
-        double error = std::clamp<double>(grid_.density[cell] - grid_.room[cell], -most, most);
-        for (int axis = 0; axis < 3 && error < 0; ++axis) {
-            // Next to the surface the density may be less.
-            const int stride = grid_.stride(axis);
-            if (grid_.open[axis][cell] > 0 && grid_.row[cell - stride] < 0) error = 0;
-            if (grid_.open[axis][cell + stride] > 0 && grid_.row[cell + stride] < 0) error = 0;
-        }
-        flow_[row] = fraction * error;
-    }
-    system_.set_bodies({}, 0);
-    system_.solve(flow_, potential_, tolerance, settings_.volume.max_iterations, workers);
-    grid_.for_tiles(workers, [&](const Cell& corner) {
-        grid_.for_rows(corner, [&](int first, const Cell&) {
-            for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
-        });
-    });
-    subtract_gradient(grid_, {system_, potential_, {}, grid_.cell_size()}, grid_.shift, workers);
 }
 
 void FluidSolver::move_particles(double dt, Vec3 gravity, TaskPool& workers) {
