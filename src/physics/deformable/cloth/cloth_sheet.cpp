@@ -20,7 +20,8 @@ namespace {
 // A plate that swings in a fluid with the amplitude X has 4 KC^(-1/3) times the drag of a steady stream, KC = 2π X/D,
 // by the vortices that grow at its edges of each swing (J. M. R. Graham, "The forces on sharp-edged cylinders in
 // oscillatory flow at low Keulegan-Carpenter numbers", 1980; 8 KC^(-1/3), beside the 2 of a steady stream). With the
-// travel s since the last turn in the place of X this factor of (D/s)^(1/3) takes as much energy a swing.
+// travel s since the last turn in the place of X this factor of (D/s)^(1/3), a number, takes as much energy a swing.
+// Test: ClothSheet.AirTakesTheEnergyOfASwingThatYoungVorticesTake.
 constexpr double young_vortex_drag = 2.02;
 
 constexpr std::uint32_t not_far = ~std::uint32_t{0};  // of elements that lie near or on the diagonal
