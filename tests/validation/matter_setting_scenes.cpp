@@ -84,6 +84,33 @@ GoldenScene slapping_sheets() {
         add(world, sheet, {0, 0, 2.0 * i}, {20.0 + 20 * i, 0, 0});
     }
     add(world, cloth_rectangle(0.4, 0.4, 0.05, linen), {5, 0, 0}, {}, {40, 30, 20});
+    add_ball(world, 0.03, {.kind = still, .position = {0.1, 0, 4}});
+    auto felt = cloth_rectangle(0.4, 0.4, 0.04, linen);
+    felt.contact_radius = 0.01;
+    felt.pose.rotation = normalized(Quat{0, 0, 1, 1});
+    add(world, felt, {0, 0, 4}, {20, 0, 0});
+    add_box(world, {0.05, 0.3, 0.3}, {.kind = still, .position = {8.1, 0, 0}});
+    for (const double speed : {5.0, 40.0}) {
+        auto sheet = cloth_rectangle(0.4, 0.4, 0.04, linen);
+        sheet.pose.rotation = normalized(Quat{0, 0, 1, 1});
+        add(world, sheet, {8.04 - speed / 400, 0, 0}, {speed, 0, 0});
+    }
+    return scene;
+}
+
+// A plate comes down on a sheet and on one with two layers until both have less room than they need.
+GoldenScene pressed_sheets() {
+    GoldenScene scene{make_world()};
+    World& world = *scene.world;
+    add_plane(world, friction(0.5));
+    auto flat = cloth_rectangle(0.2, 0.2, 0.04, linen), folded = cloth_rectangle(0.2, 0.4, 0.04, linen);
+    flat.contact_radius = folded.contact_radius = 0.005;
+    for (Vec3& node : folded.nodes) {
+        if (node.z > 0.01) node = {node.x, 0.02, -node.z};
+    }
+    add(world, flat, {-0.2, 0.006, 0});
+    add(world, folded, {0.2, 0.006, 0});
+    add_box(world, {0.5, 0.1, 0.5}, {.kind = led, .position = {0, 0.13, 0}, .linear_velocity = {0, -0.12, 0}});
     return scene;
 }
 
@@ -159,6 +186,7 @@ constexpr SettingScene scenes[] = {
     {"deformable", "loaded_sheets", loaded_sheets, 20},
     {"deformable", "thick_sheets", thick_sheets, 15},
     {"deformable", "slapping_sheets", slapping_sheets, 12},
+    {"deformable", "pressed_sheets", pressed_sheets, 15},
     {"deformable", "heavy_ropes", heavy_ropes, 20},
     {"deformable", "sleeping_brick", sleeping_brick, 360},
     {"fluid", "liquids_that_settle", liquids_that_settle, 70},
