@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Liquids with what bends: soft solids and ropes; sheets not yet (docs/physics/coupling.md, "Liquids and what bends").
+// Liquids with what bends: soft solids and ropes; sheets: fluid_cloth_test.cpp (docs/physics/coupling.md, "Liquids and
+// what bends").
 #include "foundation/random.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "validation/fluid_scenes.h"
@@ -101,19 +102,20 @@ TEST(FluidRope, LighterThanWaterItFloats) {
 }
 
 // A block of liquid flies past what is thrown into it: nothing else acts. With one substep a step the way of the centre
-// of mass tells the momentum that the nodes carry. What ropes have had beyond the liquid's force in the last
-// step, it has in the next one; drops that leave the block together with a solid are not counted with it.
+// of mass tells the momentum that the nodes carry. Drops that leave the block together with a solid are not counted
+// with it.
 TEST(FluidDeformables, KeepTheCommonMomentum) {
     Random random(8);
-    for (int trial = 0; trial < 6; ++trial) {
-        const bool is_solid = trial % 2 == 1;
+    for (int trial = 0; trial < 9; ++trial) {
+        const bool is_solid = trial % 3 == 1, is_sheet = trial % 3 == 2;
         SCOPED_TRACE(trial);
-        auto world = make_world({.gravity = {0, 0, 0}, .deformable_substeps = 1});
+        auto world = make_world({.gravity = {0, 0, 0}, .air_density = 0, .deformable_substeps = 1});
         const FluidHandle water =
             world->create_fluid({.boxes = {{{0, 0, 0}, {0.3, 0.3, 0.3}}}, .cell_size = 0.03}).value();
         DeformableDefinition thrown = is_solid ? tetrahedral_brick({0.1, 0.1, 0.1}, {3, 3, 3}, foam_of(300, 1e5))
                                                : rope_between({-0.1, 0.14, 0.1}, {0.1, 0.16, 0.2}, 0.02);
-        if (is_solid) thrown.pose.position = {0.02, 0.1, 0.1};
+        if (is_sheet) thrown = cloth_rectangle(0.15, 0.15, 0.03, {.area_density = random.between(0.1, 1)});
+        if (is_solid || is_sheet) thrown.pose.position = {0.02, 0.1, 0.1};
         thrown.linear_velocity = {random.between(1, 3), random.between(-1, 1), random.between(-1, 1)};
         const DeformableHandle handle = world->create_deformable(thrown).value();
         const double mass = world->mass(handle), liquid = volume_of(*world, water) * water_density;
@@ -125,7 +127,7 @@ TEST(FluidDeformables, KeepTheCommonMomentum) {
             if (i < 14) continue;
             const Vec3 error = own + liquid * mean_velocity_of(*world, water) - all;
             RecordProperty("error_" + std::to_string(trial), std::to_string(length(error) / length(all)));
-            const double kept = is_solid ? 5e-3 : 1e-3;
+            const double kept = is_solid ? 5e-3 : 1e-5;
             EXPECT_LT(length(error), kept * length(all));
             EXPECT_LT(length(own), 0.8 * length(all));
         }
@@ -210,37 +212,6 @@ TEST(FluidDeformables, HaveTheSameBitsForAnyNumberOfWorkersAndLanes) {
             world->step();
             ASSERT_EQ(worlds.front()->state_hash(), world->state_hash()) << "step " << i;
         }
-    }
-}
-
-// Water that falls on a sheet held at its corners has no more speed than from its fall, whether it goes through or not.
-TEST(FluidCloth, WaterThatFallsOnATautSheetDoesNotFlyApart) {
-    Random random(9);
-    for (int trial = 0; trial < 4; ++trial) {
-        SCOPED_TRACE(trial);
-        auto world = make_world({});
-        add_tank(*world, {{-0.6, 0, -0.6}, {0.6, 1.5, 0.6}});
-        DeformableDefinition sheet = cloth_rectangle(
-            0.6, 0.6, 0.04,
-            {.area_density = random.between(0.1, 0.5), .stretch_stiffness = random.between(2000, 10000)});
-        for (std::uint32_t i = 0; i < sheet.nodes.size(); ++i) {
-            const Vec3 p = sheet.nodes[i];
-            if (std::min(std::fabs(p.x), std::fabs(p.z)) > 0.3 - 1e-6) sheet.pinned.push_back(i);
-        }
-        ASSERT_FALSE(sheet.pinned.empty());
-        sheet.pose.position = {0, 0.5, 0};
-        ASSERT_TRUE(world->create_deformable(sheet));
-        const double above = random.between(0.05, 0.3), top = 0.5 + above + 0.12;
-        const FluidHandle water =
-            world->create_fluid({.boxes = {{{-0.1, 0.5 + above, -0.1}, {0.1, top, 0.1}}}, .cell_size = 0.03}).value();
-        const std::size_t count = world->fluid_particles(water).positions.size();
-        double fastest = 0;
-        for (int i = 0; i < 60; ++i) {
-            world->step();
-            for (const Vec3f v : world->fluid_particles(water).velocities) fastest = std::max(fastest, length(Vec3(v)));
-        }
-        EXPECT_EQ(world->fluid_particles(water).positions.size(), count);
-        EXPECT_LT(fastest, 1.5 * std::sqrt(2 * gravity * top));  // what sprays off the ground is somewhat faster
     }
 }
 

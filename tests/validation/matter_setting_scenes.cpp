@@ -172,6 +172,20 @@ GoldenScene water_on_a_ball() {
     return scene;
 }
 
+// Water falls on a light sheet whose corners are held.
+GoldenScene water_on_a_sheet() {
+    GoldenScene scene{make_world()};
+    World& world = *scene.world;
+    auto sheet = cloth_rectangle(0.3, 0.3, 0.05, linen);
+    for (std::uint32_t i = 0; i < sheet.nodes.size(); ++i) {
+        if (std::fabs(sheet.nodes[i].x * sheet.nodes[i].z) > 0.02) sheet.pinned.push_back(i);
+    }
+    add(world, sheet, {});
+    EXPECT_TRUE(world.create_fluid(
+        {.boxes = {{{-0.08, 0.02, -0.08}, {0.08, 0.1, 0.08}}}, .velocity = {0, -2, 0}, .cell_size = 0.03}));
+    return scene;
+}
+
 // As much water that its particles count for the box of its cells, and drops so far that they may be too far.
 GoldenScene far_drops() {
     GoldenScene scene{make_world()};
@@ -191,6 +205,7 @@ constexpr SettingScene scenes[] = {
     {"deformable", "sleeping_brick", sleeping_brick, 360},
     {"fluid", "liquids_that_settle", liquids_that_settle, 70},
     {"fluid", "water_on_a_ball", water_on_a_ball, 10},
+    {"fluid", "water_on_a_sheet", water_on_a_sheet, 12},
     {"fluid", "far_drops", far_drops, 2},
 };
 

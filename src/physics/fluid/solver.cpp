@@ -116,7 +116,7 @@ void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers)
 }
 
 FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers,
-                                  std::span<ImmersedPoint> points) {
+                                  std::span<ImmersedPoint> points, const PointResponse& respond) {
     FluidOutcome outcome;
     for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
     immersed_.begin(points, origin_);
@@ -137,7 +137,8 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     outcome.is_slowed = cells > max_parts;
     obstacles_.begin(obstacles, settings_.obstacles, grid_);
     const double part = dt / outcome.parts;
-    for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
+    for (int i = 0; i < outcome.parts && !particles_.empty(); ++i)
+        advance_part({part, gravity, respond}, outcome, workers);
     obstacles_.end();
 
     // Non-finite numbers: they must not reach any obstacle.
@@ -187,7 +188,9 @@ float FluidSolver::particle_fraction() const {
     return static_cast<float>(properties().particle_volume / (h * h * h));
 }
 
-void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+void FluidSolver::advance_part(const Part& part, FluidOutcome& outcome, TaskPool& workers) {
+    const double dt = part.dt;
+    const Vec3 gravity = part.gravity;
     outcome.lost += grid_.cover(particles_, settings_.cells, workers);
     if (particles_.empty()) return;
     std::vector<Bounds> near = obstacles_.in_reach(dt, grid_.cell_size());
@@ -198,7 +201,7 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     immersed_.measure(dt, grid_);
     obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
-    if (has_liquid) advance_grid(dt, gravity, outcome, workers);
+    if (has_liquid) advance_grid(part, outcome, workers);
     move_particles(dt, gravity, workers);
     fly(dt, gravity * dt, workers);
     if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, liquids_, particles_);
@@ -206,9 +209,10 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     immersed_.advance(dt);
 }
 
-void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+void FluidSolver::advance_grid(const Part& part, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("advance grid");
-    const double h = grid_.cell_size();
+    const double dt = part.dt, h = grid_.cell_size();
+    const Vec3 gravity = part.gravity;
     find_places(dt, workers);
     particles_to_grid(grid_, particles_, places_, {particle_fraction(), liquids_}, workers);
     immersed_.find_conductance(dt, liquids_, grid_);
@@ -228,8 +232,8 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     const auto resists = [&](const FluidProperties& of) { return is_viscous(of, settings_.viscosity, h, dt); };
     if (std::ranges::any_of(liquids_.liquids(), resists)) shear(dt, outcome, workers);
     for (MovingObstacle& moving : obstacles_.moving()) bind_liquid(grid_, density, gravity, moving);
-    immersed_.predict(dt, grid_);
-    project(dt, outcome, workers);
+    immersed_.start(grid_);
+    project(part, outcome, workers);
     for (MovingObstacle& moving : obstacles_.moving()) drag_small_body(grid_, liquids_, dt, moving);
     // Next to the liquid the air's faces move with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
@@ -287,24 +291,29 @@ void FluidSolver::shear(double dt, FluidOutcome& outcome, TaskPool& workers) {
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
-void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
+void FluidSolver::project(const Part& part, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve pressure");
     const int max_iterations = settings_.pressure.max_iterations;
-    const double h = grid_.cell_size(), rho = properties().density;
+    const double dt = part.dt, h = grid_.cell_size(), rho = properties().density;
     change_by_films(dt);
-    outflow(grid_, obstacles_, system_, flow_, workers);
-    immersed_.add_outflow(grid_, flow_);
-    for (double& flow : flow_) flow *= -rho / h;
-    surface_.clear();
-    if (is_tense_) apply_surface_tension(dt, workers);
     system_.set_bodies(obstacles_.moving(), rho / h);
     const double tolerance = settings_.pressure.tolerance * rho * h * h / dt;
-    const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
-    outcome.pressure_iterations += iterations;
-    outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
+    if (part.respond) part.respond(dt, immersed_);
+    do {
+        immersed_.predict(dt, grid_);
+        outflow(grid_, obstacles_, system_, flow_, workers);
+        immersed_.add_outflow(grid_, flow_);
+        for (double& flow : flow_) flow *= -rho / h;
+        surface_.clear();
+        if (is_tense_) apply_surface_tension(dt, workers);
+        const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
+        outcome.pressure_iterations += iterations;
+        outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
+        immersed_.find_impulses(system_, impulse_, grid_);
+    } while (part.respond && part.respond(dt, immersed_));
 
     subtract_gradient(grid_, {system_, impulse_, surface_, 1 / (rho * h)}, grid_.velocity, workers);
-    immersed_.apply_pressure(system_, impulse_, grid_);
+    immersed_.apply_pressure(grid_);
     push_obstacles(impulse_, dt);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/free_components.h"
 #include "physics/fluid/particles/mixture.h"
+#include "physics/fluid/particles/point_bonds.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 #include "physics/fluid/pressure/viscosity.h"
@@ -31,6 +33,12 @@ struct FluidOutcome {
     bool is_slowed = false;  ///< particles were faster than the parts allow
 };
 
+/// What immersed points are held by answers to what a solve of the pressure found for them, in a part of a step of dt
+/// seconds: the liquid's impulses on them (N s) and what these change by if a point ends the part with another
+/// velocity, by axis, kg. Returns whether it has changed accelerations of the points: then the part is solved again
+/// with these.
+using PointResponse = std::function<bool(double dt, const ImmersedPoints& points)>;
+
 /// A liquid, or several: particles that carry it and a grid on which its pressure and viscosity are solved, with the
 /// rigid bodies in the same equations. docs/physics/fluids.md.
 class FluidSolver {
@@ -45,7 +53,15 @@ public:
     void prepare(std::span<FluidObstacle> obstacles, TaskPool& workers);
     /// Advances by dt; the impulses of obstacles and immersed points are set.
     FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers,
-                         std::span<ImmersedPoint> points = {});
+                         std::span<ImmersedPoint> points = {}, const PointResponse& respond = {});
+
+    /// After advance(): the liquid that immersed points hold, and impulses on it (point_bonds.h).
+    void find_bonds(std::span<PointBond> bonds) const {
+        fluid::find_bonds(grid_.cell_size(), liquids_, particles_, bonds);
+    }
+    void push_bonds(std::span<const PointBond> bonds, std::span<const Vec3> impulses) {
+        fluid::push_bonds(grid_.cell_size(), liquids_, bonds, impulses, particles_);
+    }
 
     /// After a step: moves the obstacles to their places after contacts and keeps the particles out of them there.
     struct Followed {
@@ -100,13 +116,18 @@ public:
 private:
     void keep_out(TaskPool& workers);
     void displace(double fraction, Followed& followed, TaskPool& workers);
-    void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
-    void advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
+    struct Part {
+        double dt = 0;  // s
+        Vec3 gravity;   // m/s²
+        const PointResponse& respond;
+    };
+    void advance_part(const Part& part, FluidOutcome& outcome, TaskPool& workers);
+    void advance_grid(const Part& part, FluidOutcome& outcome, TaskPool& workers);
     void fly(double dt, Vec3 change, TaskPool& workers);
     [[nodiscard]] float particle_fraction() const;  // of a cell's volume
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
-    void project(double dt, FluidOutcome& outcome, TaskPool& workers);
+    void project(const Part& part, FluidOutcome& outcome, TaskPool& workers);
     void shear(double dt, FluidOutcome& outcome, TaskPool& workers);
     [[nodiscard]] Sticking sticking() const;
     void apply_surface_tension(double dt, TaskPool& workers);

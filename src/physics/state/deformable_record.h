@@ -39,7 +39,6 @@ struct LiquidMemory {
     std::vector<Vec3> velocity;               ///< of the nodes when that step began, m/s
     std::vector<Vec3> force;                  ///< of the liquids on the nodes in the step before, N
     std::vector<Vec3> bound, bound_momentum;  ///< as of SeenDeformable, of all fluids in this step
-    std::vector<Vec3> reaction;               ///< impulses that the nodes still owe to the liquids, N s
     std::vector<Vec3> acceleration;           ///< that is expected of the nodes without the liquids, m/s²
     std::vector<Vec3> force_asleep;           ///< of the liquids on the nodes in the last step before it fell asleep, N
     bool wakes = false;                       ///< a liquid that it lies asleep in is not quiet any more

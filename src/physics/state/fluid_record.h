@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -20,11 +21,21 @@ struct SeenBody {
     Vec3 force, torque;  ///< of the fluid on it in that step, N, N m
 };
 
+/// Where a point of a deformable lies among its nodes.
+struct ImmersedPlace {
+    std::uint32_t count = 0;
+    std::array<std::uint32_t, 4> node{};
+    std::array<double, 4> weight{};  ///< together 1
+};
+
 /// A deformable that a fluid met in its last step.
 struct SeenDeformable {
     DeformableHandle deformable;
     std::vector<Vec3> force;  ///< of the fluid on its nodes in that step, N
-    /// Liquid that is bound to the nodes, by axis, kg, and its momentum at the end of that step, kg m/s.
+    /// Liquid that its points hold from the fluid's advance until that step ends, and where these are.
+    std::vector<PointBond> bonds;
+    std::vector<ImmersedPlace> places;
+    /// That liquid by node and axis, kg, and its momentum at which no force is between both, kg m/s.
     std::vector<Vec3> bound, bound_momentum;
 };
 

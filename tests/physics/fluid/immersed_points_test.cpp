@@ -51,9 +51,11 @@ struct Immersion {
             const Cell c{at % block.grid.size()[0], row_y % block.grid.size()[1], row_y / block.grid.size()[1]};
             impulse.push_back(dot(gradient, block.grid.center(c)));
         }
+        immersed.start(block.grid);
         immersed.predict(time, block.grid);
         subtract_gradient(block.grid, {system, impulse, {}, 1 / (rho * cell)}, block.grid.velocity, block.workers);
-        immersed.apply_pressure(system, impulse, block.grid);
+        immersed.find_impulses(system, impulse, block.grid);
+        immersed.apply_pressure(block.grid);
     }
     std::vector<ImmersedPoint> points;
     LiquidBlock block;
@@ -138,6 +140,30 @@ TEST(ImmersedPoints, DragEndsTheSlipAndDoesNotReverseIt) {
         if (is_cylinder) {
             EXPECT_GE(dot(after, point.velocity), -1e-6);
         }
+    }
+}
+
+// What holds a point brings it and the liquid that it holds to a velocity, at each of its faces alike: with as much as
+// both have at it, m + b. By its mass alone its parts at faces with little liquid would fly off.
+TEST(ImmersedPoints, AreHeldWithTheLiquidThatTheyHold) {
+    Random random(7);
+    for (int trial = 0; trial < 20; ++trial) {
+        ImmersedPoint point = random_point(random);
+        point.form.form = DragForm::sheet;
+        point.form.extent = 1e-3;
+        point.volume = 0;
+        point.velocity = {};
+        point.inverse_mass = 1 / std::pow(10.0, random.between(-5, -2));
+        Immersion all({point});
+        all.block.set_velocity([](Vec3) { return Vec3{}; });
+        all.find_conductance();
+        all.immersed.start(all.block.grid);
+        const Vec3 speed{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+        const double mass = 1 / point.inverse_mass;
+        all.points[0].acceleration = {};
+        all.points[0].support = scale(Vec3{mass, mass, mass} + all.immersed.bound(0), speed) / time;
+        all.press({});
+        EXPECT_LT(length(all.immersed.velocity_after(0) - speed), 1e-3 * length(speed));
     }
 }
 

@@ -8,6 +8,9 @@
 // With a = 1/(m + c), q = m a, r = c a: v = q v* + r u − h² φ a ΔP, and with G = M + Σ c q and W = l + Σ r φ
 //
 //   u = (M u* + Σ c q v* − h² W ΔP)/G,    flow of both = l u + Σ φ v = W u + Σ φ q v* − h² Σ φ² a ΔP.
+//
+// The particles at a face have s M, less than M at the surface. They take s of the drag, so the points have it with s c
+// for c: a and r, too.
 #include "physics/fluid/obstacles/immersed_points.h"
 
 #include <algorithm>
@@ -51,8 +54,8 @@ void ImmersedPoints::begin(std::span<ImmersedPoint> points, Vec3 origin) {
     places_.clear();
     velocities_.clear();
     for (ImmersedPoint& point : points_) {
-        point.impulse = point.bound = {};
-        point.end_velocity = point.velocity;
+        point.impulse = point.drag = point.dragged = {};
+        point.end = point.position;
         places_.push_back(point.position - origin);
         velocities_.push_back(point.velocity);
     }
@@ -132,8 +135,6 @@ void ImmersedPoints::measure(double dt, FluidGrid& grid) {
     parts_.clear();
     on_grid_.clear();
     impulses_.assign(points_.size(), {});
-    reactions_.assign(points_.size(), {});
-    known_.assign(points_.size(), {});
     grid.immersed_cells.clear();
     cell_ = grid.cell_size();
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
@@ -157,8 +158,20 @@ void ImmersedPoints::leave(FluidGrid& grid) {
 ImmersedPoints::Response ImmersedPoints::response_of(const FacePart& part) const {
     const double inverse = points_[part.point].inverse_mass;
     if (!(inverse > 0)) return {};
-    const double mass = part.weight / inverse, a = 1 / (mass + part.drag);
-    return {a, mass * a, part.drag * a};
+    const double mass = part.weight / inverse, drag = faces_[part.face].filled * part.drag, a = 1 / (mass + drag);
+    return {a, mass * a, drag * a};
+}
+
+// By all that is known of it. A part of the point is held by what moves all its parts alike, with the liquid that they
+// hold: by its mass alone, one at a face without liquid would fly off, and one that holds liquid would not be held.
+double ImmersedPoints::speed_before(const FacePart& part) const {
+    const ImmersedPoint& point = points_[part.point];
+    const Face& face = faces_[part.face];
+    const double speed = velocities_[part.point][face.axis] + point.acceleration[face.axis] * dt_;
+    if (!(point.inverse_mass > 0)) return speed;
+    const double mass = part.weight / point.inverse_mass,
+                 fraction = (mass + part.bound) / (1 / point.inverse_mass + bound_[part.point][face.axis]);
+    return speed + (point.support[face.axis] * dt_ * fraction + face.filled * part.lag) / mass;
 }
 
 void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGrid& grid) {
@@ -183,7 +196,6 @@ void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGr
             speed[face.axis] += part.weight * grid.velocity[face.axis][face.cell];
             weights[face.axis] += part.weight;
         }
-        known_[point] = weights;
         Vec3 slip;
         for (int axis = 0; axis < 3; ++axis) {
             if (weights[axis] > 0) slip[axis] = speed[axis] / weights[axis] - velocities_[point][axis];
@@ -198,8 +210,7 @@ void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGr
         for (std::size_t s = first; s < next; ++s) {
             FacePart& part = parts_[s];
             const Face& face = faces_[part.face];
-            part.is_known = grid.known[face.axis][face.cell] != 0;
-            if (!part.is_known) continue;
+            if (!grid.known[face.axis][face.cell]) continue;
             part.drag = part.weight * wet * dt * drag.along[face.axis];
             part.lag = -part.weight * wet * dt * drag.less[face.axis];
         }
@@ -210,14 +221,15 @@ void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGr
     for (Face& face : faces_) {
         face.liquid = std::max(face.liquid, min_liquid);
         face.mass = density * grid.relative_density(face.axis, face.cell) * volume * face.liquid;
+        face.filled = std::min(1.0, grid.mass[face.axis][face.cell] * particle_mass_ / face.mass);
         face.through = face.liquid;
     }
     for (const FacePart& part : parts_) {
         Face& face = faces_[part.face];
         const double fraction = fraction_of(part);
         const Response response = response_of(part);
-        face.drag += part.drag;
         face.held += part.drag * response.q;
+        face.drag += part.drag;
         face.dragged += response.r * fraction;
         face.yields += fraction * fraction * response.a;
     }
@@ -242,31 +254,38 @@ std::vector<std::int32_t> ImmersedPoints::rows(const FluidGrid& grid) const {
     return rows;
 }
 
+// What has no pressure flies on with the velocity of its particles, and is left to what the points then hold.
+void ImmersedPoints::start(const FluidGrid& grid) {
+    for (FacePart& part : parts_) {
+        Face& face = faces_[part.face];
+        if (grid.row[face.cell] >= 0 || grid.row[face.cell - grid.stride(face.axis)] >= 0) continue;
+        points_[part.point].drag[face.axis] += part.drag;
+        part.drag = part.lag = 0;
+        face.held = face.drag = face.dragged = 0;
+    }
+    for (Face& face : faces_) face.start = grid.velocity[face.axis][face.cell];
+    bound_.assign(points_.size(), {});
+    for (FacePart& part : parts_) {
+        const Face& face = faces_[part.face];
+        if (!(part.drag > 0)) continue;
+        part.bound = face.filled * part.drag * face.mass / (face.drag + face.mass);
+        bound_[part.point][face.axis] += part.bound;
+    }
+}
+
 void ImmersedPoints::predict(double dt, FluidGrid& grid) {
-    if (parts_.empty()) return;
-    for (const std::uint32_t point : on_grid_) velocities_[point] += points_[point].acceleration * dt;
+    dt_ = dt;
     for (Face& face : faces_) face.momentum = face.solid_flow = 0;
     for (const FacePart& part : parts_) {
         Face& face = faces_[part.face];
         const Response response = response_of(part);
-        const double inverse = points_[part.point].inverse_mass;
-        const double speed =
-            velocities_[part.point][face.axis] + (inverse > 0 ? part.lag * inverse / part.weight : 0.0);
+        const double speed = speed_before(part);
         face.momentum += part.drag * response.q * speed - part.lag;
-        if (part.is_known && is_in_liquid(part.point))
-            face.momentum += part.weight / known_[part.point][face.axis] * points_[part.point].reaction[face.axis];
         face.solid_flow += fraction_of(part) * response.q * speed;
     }
-    for (const std::uint32_t point : on_grid_) {
-        if (is_in_liquid(point)) std::swap(reactions_[point], points_[point].reaction);
-    }
     for (Face& face : faces_) {
-        const int below = face.cell - grid.stride(face.axis);
-        const bool is_in_air = grid.row[face.cell] < 0 && grid.row[below] < 0;
-        if (is_in_air) face.mass = grid.mass[face.axis][face.cell] * particle_mass_;
-        const double all = face.mass + face.held;
         float& velocity = grid.velocity[face.axis][face.cell];
-        if (all > 0) velocity = static_cast<float>((face.mass * velocity + face.momentum) / all);
+        velocity = static_cast<float>((face.mass * face.start + face.momentum) / (face.mass + face.held));
         face.speed = velocity;
     }
 }
@@ -281,7 +300,8 @@ void ImmersedPoints::add_outflow(const FluidGrid& grid, std::span<double> flow) 
     }
 }
 
-void ImmersedPoints::apply_pressure(const PressureSystem& system, std::span<const double> impulse, FluidGrid& grid) {
+void ImmersedPoints::find_impulses(const PressureSystem& system, std::span<const double> impulse,
+                                   const FluidGrid& grid) {
     const double area = cell_ * cell_;
     for (Face& face : faces_) {
         const int upper = face.cell, lower = face.cell - grid.stride(face.axis);
@@ -296,35 +316,61 @@ void ImmersedPoints::apply_pressure(const PressureSystem& system, std::span<cons
         if (above < 0) gap = system.gap_fraction(grid.surface[lower], grid.surface[upper]);
         if (below < 0) gap = system.gap_fraction(grid.surface[upper], grid.surface[lower]);
         face.speed -= area * face.step * (face.liquid / gap + face.dragged) / (face.mass + face.held);
+    }
+    impulses_.assign(points_.size(), {});
+    after_.assign(points_.size(), {});
+    std::vector<Vec3> mass(points_.size());
+    for (const FacePart& part : parts_) {
+        const Face& face = faces_[part.face];
+        const double drag = face.filled * part.drag, speed = speed_after(part);
+        impulses_[part.point][face.axis] += push_on(part) + drag * (face.speed - speed) + face.filled * part.lag;
+        if (!(points_[part.point].inverse_mass > 0)) continue;
+        const double own = part.weight / points_[part.point].inverse_mass + part.bound;
+        mass[part.point][face.axis] += own;
+        after_[part.point][face.axis] += own * speed;
+    }
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (mass[i][axis] > 0)
+                after_[i][axis] /= mass[i][axis];
+            else
+                after_[i][axis] = end_velocity(i)[axis];
+        }
+    }
+}
+
+// By the pressure, N s.
+double ImmersedPoints::push_on(const FacePart& part) const {
+    return -cell_ * cell_ * fraction_of(part) * faces_[part.face].step;
+}
+
+double ImmersedPoints::speed_after(const FacePart& part) const {
+    const Response response = response_of(part);
+    return response.q * speed_before(part) + response.r * faces_[part.face].speed + response.a * push_on(part);
+}
+
+void ImmersedPoints::apply_pressure(FluidGrid& grid) {
+    for (const Face& face : faces_) {
+        if (grid.row[face.cell] < 0 && grid.row[face.cell - grid.stride(face.axis)] < 0) continue;
         grid.velocity[face.axis][face.cell] = static_cast<float>(face.speed);
     }
     for (const FacePart& part : parts_) {
         const Face& face = faces_[part.face];
-        const Response response = response_of(part);
-        const double inverse = points_[part.point].inverse_mass;
-        const double before =
-            velocities_[part.point][face.axis] + (inverse > 0 ? part.lag * inverse / part.weight : 0.0);
-        const double push = -area * fraction_of(part) * face.step;
-        const double speed = response.q * before + response.r * face.speed + response.a * push;
-        impulses_[part.point][face.axis] += push + part.drag * (face.speed - speed) + part.lag;
-        // The liquid at the face as a parcel of its mass, which all drag there holds together.
-        if (part.drag > 0) points_[part.point].bound[face.axis] += part.drag * face.mass / (face.drag + face.mass);
+        ImmersedPoint& point = points_[part.point];
+        const double drag = face.filled * part.drag;
+        point.drag[face.axis] += drag;
+        point.dragged[face.axis] += drag * (face.speed - speed_after(part));
     }
 }
 
 void ImmersedPoints::advance(double dt) {
-    std::size_t next = 0;
+    dt_ = dt;
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
         ImmersedPoint& point = points_[i];
-        if (next < on_grid_.size() && on_grid_[next] == i) {
-            ++next;
-        } else {
-            velocities_[i] += point.acceleration * dt;
-        }
         point.impulse += impulses_[i];
-        velocities_[i] += impulses_[i] * point.inverse_mass;
+        velocities_[i] = end_velocity(i);
         places_[i] += velocities_[i] * (dt / 2);
-        point.end_velocity = velocities_[i];
+        point.end = places_[i] + origin_;
     }
 }
 

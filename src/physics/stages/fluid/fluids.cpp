@@ -3,6 +3,7 @@
 // this step is a force on it through the rigid solver's substeps, so that its contacts respond to it.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "foundation/task_pool.h"
 #include "physics/definitions/step_report.h"
@@ -11,6 +12,7 @@
 #include "physics/stages/fluid/fluid_ports.h"
 #include "physics/stages/fluid/fluids.h"
 #include "physics/stages/fluid/immersed_deformables.h"
+#include "physics/stages/fluid/sheet_response.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
@@ -276,9 +278,11 @@ void advance_fluid(const FluidAccess& world, FluidRecord& fluid) {
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
     fluid.solver->set_settings(world.settings.solver.fluid);
     ImmersedDeformables immersed = immerse(world, fluid, bending);
+    SheetResponse sheets(world, immersed);
+    const PointResponse respond = sheets.is_empty() ? PointResponse() : std::ref(sheets);
     const FluidOutcome outcome =
         fluid.solver->advance(world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor,
-                              obstacles, world.workers, immersed.points);
+                              obstacles, world.workers, immersed.points, respond);
     note_outcome(world, fluid, outcome);
     push_bodies(world, fluid, obstacles);
     note_forces(world, fluid, immersed);
@@ -340,6 +344,7 @@ void settle_fluids(const FluidAccess& world) {
         FluidRecord& fluid = world.fluids.records.at(slot);
         if (fluid.is_frozen || fluid.is_asleep) continue;
         const TaskPool::StayAwake stay_awake(world.workers);
+        settle_immersed(world, fluid);
         follow_bodies(world, fluid);
     }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <utility>
 
 #include "physics/definitions/step_report.h"
@@ -26,29 +25,33 @@ constexpr double fibre_density = 1400;
 /// Makes the points of one deformable.
 struct PointMaker {
     const DeformableRecord& record;
-    const std::vector<Vec3>& acceleration;  // of the nodes, m/s²
+    Vec3 pull;                              // m/s²
+    const std::vector<Vec3>& acceleration;  // of the nodes, with what holds them, m/s²
     Bounds near;                            // where liquid may be
     double cell;                            // m
     ImmersedDeformables& to;
 
     // A point between nodes: its part of the element's volume, m³, and mass, kg.
-    void add(const ImmersedDeformables::Place& place, double volume, double mass, const ImmersedForm& form) {
+    void add(const ImmersedPlace& place, double volume, double mass, const ImmersedForm& form) {
         const Nodes& nodes = record.nodes();
         ImmersedPoint point;
         point.volume = volume;
         // What sleeps only displaces its volume: a sheet that held the liquid under it would stir it.
         if (!record.is_asleep) point.form = form;
         double moving = 0;
+        Vec3 held;  // m/s²
         for (std::size_t k = 0; k < place.count; ++k) {
             const std::uint32_t node = place.node[k];
             point.position += place.weight[k] * nodes.position[node];
             if (record.is_asleep || !(nodes.inverse_mass[node] > 0)) continue;
             point.velocity += place.weight[k] * nodes.mean_velocity[node];
-            point.acceleration += place.weight[k] * acceleration[node];
+            point.acceleration += place.weight[k] * pull;
+            held += place.weight[k] * (acceleration[node] - pull);
             moving += place.weight[k];
         }
         // What held nodes have of it does not move.
         point.inverse_mass = moving / mass;
+        if (moving > 0) point.support = held * (mass / moving);
         if (!contains(near, point.position)) return;
         to.points.push_back(point);
         to.places.push_back(place);
@@ -163,28 +166,6 @@ void expect_support(const FluidAccess& world, DeformableRecord& record) {
     }
 }
 
-// What the nodes owe to the liquid is due at their points, by mass. What has no point stays with the node.
-void owe(DeformableRecord& record, std::span<ImmersedPoint> points,
-         std::span<const ImmersedDeformables::Place> places) {
-    std::vector<Vec3>& owed = record.liquid.reaction;
-    if (owed.empty()) return;
-    std::vector<double> mass(owed.size(), 0);
-    const auto for_each = [&](const auto& visit) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!(points[i].inverse_mass > 0)) continue;
-            for (std::size_t k = 0; k < places[i].count; ++k)
-                visit(points[i], places[i].node[k], places[i].weight[k] / points[i].inverse_mass);
-        }
-    };
-    for_each([&](ImmersedPoint&, std::uint32_t node, double part) { mass[node] += part; });
-    for_each([&](ImmersedPoint& point, std::uint32_t node, double part) {
-        point.reaction += owed[node] * (part / mass[node]);
-    });
-    for (std::size_t i = 0; i < owed.size(); ++i) {
-        if (mass[i] > 0) owed[i] = {};
-    }
-}
-
 // What sinks or rises as a whole is not quiet, however slow: liquids have the same limit.
 bool is_sinking(const FluidAccess& world, const FluidRecord& fluid, const Nodes& nodes) {
     const Vec3 down = normalized(world.settings.gravity, {});
@@ -204,18 +185,11 @@ void for_each_deformable(const FluidAccess& world, Visit visit) {
     }
 }
 
-// The liquid that is bound to a node moves with it to the velocity that the liquid found: another one costs its
-// momentum. What the nodes owe to no liquid, they have back.
+// The liquid that a node holds goes along with it: another velocity than its own costs its momentum.
 void set_flow(const FluidAccess& world, DeformableRecord& record) {
     const double dt = world.settings.time_step;
-    LiquidMemory& memory = record.liquid;
+    const LiquidMemory& memory = record.liquid;
     const Nodes& nodes = record.nodes();
-    if (std::ranges::any_of(memory.reaction, [](Vec3 impulse) { return impulse != Vec3{}; })) {
-        std::vector<Vec3> force(nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) force[i] = nodes.force_on(i) + memory.reaction[i] / dt;
-        record.set_liquid_force(force);
-    }
-    memory.reaction.clear();
     if (record.solid() || nodes.force.empty()) return;
     std::vector<NodeFlow> flow(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -230,14 +204,45 @@ void set_flow(const FluidAccess& world, DeformableRecord& record) {
     record.set_flow(std::move(flow));
 }
 
+// The liquid that the points of sheets and ropes hold.
+void bind_liquid(const FluidAccess& world, FluidRecord& fluid, const ImmersedDeformables& immersed) {
+    std::vector<PointBond> bonds;
+    std::vector<Vec3> slips;
+    for (const ImmersedDeformables::Part& part : immersed.parts) {
+        SeenDeformable& seen = fluid.immersed[static_cast<std::size_t>(&part - immersed.parts.data())];
+        if (world.immersed.records.at(part.slot).solid()) continue;
+        for (std::size_t i = part.first; i < part.last; ++i) {
+            const ImmersedPoint& point = immersed.points[i];
+            if (point.drag == Vec3{}) continue;
+            bonds.push_back({point.end - fluid.solver->origin(), point.drag, {}, {}});
+            Vec3& slip = slips.emplace_back();
+            for (int axis = 0; axis < 3; ++axis) {
+                if (point.drag[axis] > 0) slip[axis] = point.dragged[axis] / point.drag[axis];
+            }
+            seen.places.push_back(immersed.places[i]);
+        }
+    }
+    fluid.solver->find_bonds(bonds);
+    std::size_t next = 0;
+    for (SeenDeformable& seen : fluid.immersed) {
+        for (const ImmersedPlace& place : seen.places) {
+            const PointBond& bond = seen.bonds.emplace_back(bonds[next]);
+            const Vec3 momentum = scale(bond.bound, bond.velocity - slips[next++]);
+            for (std::size_t k = 0; k < place.count; ++k) {
+                seen.bound[place.node[k]] += place.weight[k] * bond.bound;
+                seen.bound_momentum[place.node[k]] += place.weight[k] * momentum;
+            }
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> deformables_near(const FluidAccess& world, const FluidRecord& fluid) {
     std::vector<std::uint32_t> slots;
     const Bounds reach = liquid_reach(world, fluid);
-    // Without sheets: water that falls on a taut one flies apart (docs/physics/coupling.md, "Falls short").
     for_each_deformable(world, [&](std::uint32_t slot, const DeformableRecord& record) {
-        if (record.definition.enabled && !record.cloth() && overlaps(reach, record.bounds())) slots.push_back(slot);
+        if (record.definition.enabled && overlaps(reach, record.bounds())) slots.push_back(slot);
     });
     return slots;
 }
@@ -256,7 +261,12 @@ ImmersedDeformables immerse(const FluidAccess& world, const FluidRecord& fluid,
     const Bounds near = liquid_reach(world, fluid);
     for (const std::uint32_t slot : slots) {
         DeformableRecord& record = world.immersed.records.at(slot);
-        PointMaker maker{record, record.liquid.acceleration, near, fluid.definition.cell_size, immersed};
+        PointMaker maker{record,
+                         record.acceleration(world.settings.gravity),
+                         record.liquid.acceleration,
+                         near,
+                         fluid.definition.cell_size,
+                         immersed};
         const std::size_t first = immersed.points.size();
         if (record.rope()) {
             add_rope(maker);
@@ -266,8 +276,6 @@ ImmersedDeformables immerse(const FluidAccess& world, const FluidRecord& fluid,
             add_solid(maker);
         }
         immersed.parts.push_back({slot, first, immersed.points.size()});
-        owe(record, {immersed.points.data() + first, immersed.points.size() - first},
-            {immersed.places.data() + first, immersed.places.size() - first});
     }
     return immersed;
 }
@@ -283,18 +291,40 @@ void note_forces(const FluidAccess& world, FluidRecord& fluid, const ImmersedDef
         const std::size_t count = record.nodes().size();
         for (auto* vector : {&seen.force, &seen.bound, &seen.bound_momentum}) vector->assign(count, {});
         for (std::size_t i = part.first; i < part.last; ++i) {
-            const ImmersedDeformables::Place& place = immersed.places[i];
+            const ImmersedPlace& place = immersed.places[i];
             const ImmersedPoint& point = immersed.points[i];
             for (std::size_t k = 0; k < place.count; ++k) {
                 const std::uint32_t node = place.node[k];
-                const double weight = place.weight[k];
-                // A reaction that found no liquid comes back.
-                seen.force[node] += (point.impulse + point.reaction) * (weight / dt);
-                seen.bound[node] += point.bound * weight;
-                seen.bound_momentum[node] += scale(point.bound, point.end_velocity) * weight;
+                seen.force[node] += point.impulse * (place.weight[k] / dt);
             }
         }
     }
+    bind_liquid(world, fluid, immersed);
+}
+
+void settle_immersed(const FluidAccess& world, FluidRecord& fluid) {
+    std::vector<PointBond> bonds;
+    std::vector<Vec3> impulses;
+    for (SeenDeformable& seen : fluid.immersed) {
+        const DeformableRecord* record = world.immersed.records.find(seen.deformable);
+        for (std::size_t i = 0; i < seen.bonds.size(); ++i) {
+            bonds.push_back(seen.bonds[i]);
+            Vec3& impulse = impulses.emplace_back();
+            if (record == nullptr || record->nodes().flow_impulse.empty()) continue;
+            // Each node's impulse comes of all liquid that it holds.
+            const ImmersedPlace& place = seen.places[i];
+            for (std::size_t k = 0; k < place.count; ++k) {
+                const Vec3 had = record->nodes().flow_impulse[place.node[k]], all = record->liquid.bound[place.node[k]];
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (all[axis] > 0)
+                        impulse[axis] -= had[axis] * (place.weight[k] * bonds.back().bound[axis] / all[axis]);
+                }
+            }
+        }
+        seen.bonds.clear();
+        seen.places.clear();
+    }
+    fluid.solver->push_bonds(bonds, impulses);
 }
 
 void keep_immersed_awake(const FluidAccess& world, const FluidRecord& fluid) {
@@ -323,8 +353,6 @@ void begin_immersed(const FluidAccess& world) {
         for (std::size_t i = 0; i < memory.force.size(); ++i)
             memory.force[i] = force_of_liquids(record.nodes(), i, world.settings.time_step);
         for (auto* vector : {&memory.bound, &memory.bound_momentum}) vector->assign(record.nodes().size(), {});
-        memory.reaction = record.nodes().flow_impulse;
-        for (Vec3& impulse : memory.reaction) impulse = -impulse;
         record.set_liquid_force({});
         if (!record.solid()) record.set_flow({});
     });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,19 +13,13 @@ namespace embody::physics::stages {
 
 /// What bends, near a fluid, by points that are immersed in it (docs/physics/coupling.md, "Liquids and what bends").
 struct ImmersedDeformables {
-    /// Where a point lies among the nodes of its deformable.
-    struct Place {
-        std::uint32_t count = 0;
-        std::array<std::uint32_t, 4> node{};
-        std::array<double, 4> weight{};  ///< together 1
-    };
     struct Part {
         std::uint32_t slot = 0;
         std::size_t first = 0, last = 0;  ///< of its points
     };
     std::vector<Part> parts;
     std::vector<ImmersedPoint> points;
-    std::vector<Place> places;  ///< by point
+    std::vector<ImmersedPlace> places;  ///< by point
 };
 
 /// Slots of the enabled deformables that the fluid may meet in this step, ascending.
@@ -49,6 +42,8 @@ bool are_immersed_asleep(const FluidAccess& world, const FluidRecord& fluid);
 void begin_immersed(const FluidAccess& world);
 /// Adds a fluid's forces to the nodes.
 void push_immersed(const FluidAccess& world, const FluidRecord& fluid);
+/// After the deformables: gives a fluid the impulses that the nodes have had of it beyond those forces.
+void settle_immersed(const FluidAccess& world, FluidRecord& fluid);
 /// After all fluids: wakes what a fluid has woken, and remembers the forces.
 void end_immersed(const FluidAccess& world);
 
