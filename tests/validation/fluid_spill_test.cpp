@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is spilled: films thinner than a cell stop, and drops cling to walls as their rims hold them.
+#include "foundation/random.h"
 #include "validation/fluid_scenes.h"
 
 namespace embody::physics {
@@ -37,6 +38,29 @@ TEST(FluidSpill, ALitreOnTheFloorStaysWholeAndComesToRest) {
     // Water on a floor stands 0.5 to 5 mm thick (two capillary lengths at most): a disc of 0.25 to 0.8 m radius.
     EXPECT_GT(distances[count * 9 / 10], 0.25);
     EXPECT_LT(distances[count * 9 / 10], 0.8);
+}
+
+// Blobs that fall or are thrown into an empty tank: what a wall takes from the first drops is not given to the others.
+TEST(FluidSpill, BlobsThatLandHaveNoMoreEnergyThanBefore) {
+    Random random(21);
+    double most = -1;
+    for (int trial = 0; trial < 40; ++trial) {
+        SCOPED_TRACE(trial);
+        auto world = make_world({});
+        add_tank(*world, {{-0.4, 0, -0.4}, {0.4, 1.6, 0.4}});
+        const double cell = random.between(0.025, 0.04), half = random.between(0.06, 0.12),
+                     above = random.between(0.1, 0.8), height = random.between(0.06, 0.15);
+        FluidDefinition blob{.boxes = {{{-half, above, -half}, {half, above + height, half}}}, .cell_size = cell};
+        if (trial % 2 == 1) blob.velocity = {random.between(-3, 3), random.between(-2, 2), random.between(-3, 3)};
+        ASSERT_TRUE(world->create_fluid(blob));
+        const double first = energy(*world);
+        for (int i = 0; i < 40; ++i) {
+            world->step();
+            most = std::max(most, energy(*world) / first - 1);
+            EXPECT_LT(energy(*world), 1.001 * first) << "step " << i;
+        }
+    }
+    RecordProperty("most", std::to_string(most));
 }
 
 TEST(FluidSpill, HoneyThatStillRunsDoesNotSleep) {

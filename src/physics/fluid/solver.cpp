@@ -204,7 +204,7 @@ void FluidSolver::advance_part(const Part& part, FluidOutcome& outcome, TaskPool
     if (has_liquid) advance_grid(part, outcome, workers);
     move_particles(dt, gravity, workers);
     fly(dt, gravity * dt, workers);
-    if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, liquids_, particles_);
+    if (has_liquid) components_.end(gravity * dt, obstacles_, immersed_, liquids_, stopped_, particles_);
     obstacles_.advance(dt);
     immersed_.advance(dt);
 }
@@ -395,6 +395,7 @@ void FluidSolver::move_particles(double dt, Vec3 gravity, TaskPool& workers) {
     const auto time = static_cast<float>(dt);
     const DropSurroundings around{grid_, obstacles_, settings_.drops, dt};
     const std::size_t count = grid_.on_grid();
+    stopped_.assign(particles_.size(), 0);
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
         for (std::size_t i = range.first; i < range.last; ++i) {
@@ -416,7 +417,7 @@ void FluidSolver::move_particles(double dt, Vec3 gravity, TaskPool& workers) {
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);
             }
             for (int a = 0; a < 3; ++a) end[a] = particle.position[a] + time * sample.value[a] + shift[a];
-            collider.move(particle, end);
+            stopped_[i] = collider.move(particle, end) ? 1 : 0;
         }
     });
 }
@@ -437,7 +438,7 @@ void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
                 std::fill_n(particle.affine[axis], 3, 0.0f);
                 end[axis] = particle.position[axis] + static_cast<float>(dt) * velocity[axis];
             }
-            collider.move(particle, end);
+            stopped_[i] = collider.move(particle, end) ? 1 : 0;
         }
     });
 }

@@ -155,6 +155,7 @@ private:
     std::vector<FluidParticle> particles_;
     std::uint32_t next_id_ = 0;
     std::vector<std::array<float, 3>> places_;  // places at which they meet the grid
+    std::vector<std::uint8_t> stopped_;         // 1: what does not move freely has stopped it in this part
     std::vector<double> flow_, impulse_, potential_;
     std::vector<FaceValue> surface_change_;
     double speed_ = 0;       // usual one when the step began, m/s

@@ -199,13 +199,36 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
         for (int a = 0; a < 3; ++a) p.velocity[a] += static_cast<float>(push[a]);
     }
     const Vec3 gravity{0, -0.1, 0};
-    components.end(gravity, block.obstacles, {}, liquid, block.particles);
+    const std::vector<std::uint8_t> stopped(block.particles.size(), 0);
+    components.end(gravity, block.obstacles, {}, liquid, stopped, block.particles);
     const auto first_after = momenta(true), second_after = momenta(false);
     const double count = static_cast<double>(block.particles.size()) / 2;
     EXPECT_LT(length(first_after.first - first.first - gravity * count), 1e-3 * count);
     EXPECT_LT(length(second_after.first - second.first - gravity * count), 1e-3 * count);
     EXPECT_LT(length(first_after.second - first.second), 2e-3 * count);
     EXPECT_LT(length(second_after.second - second.second), 2e-3 * count);
+}
+
+// A block that flies, the lowest particle of which has met a floor: what that took is not put back on the others.
+TEST(FreeComponents, WhatIsStoppedOnItsPathIsNotFree) {
+    LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {6, 6, 6}));
+    PressureSystem system;
+    system.build(block.grid, {}, block.workers);
+    const Mixture liquid(FluidProperties{.density = 1, .particle_volume = 1});
+    for (const std::uint8_t is_stopped : {0, 1}) {
+        FreeComponents components;
+        for (FluidParticle& p : block.particles) p.velocity[1] = -1;
+        components.begin(block.grid, system, block.obstacles, {}, block.particles, {.liquids = liquid, .all = true});
+        std::vector<std::uint8_t> stopped(block.particles.size(), 0);
+        stopped.front() = is_stopped;
+        block.particles.front().velocity[1] = 0;
+        components.end({}, block.obstacles, {}, liquid, stopped, block.particles);
+        double sum = 0;
+        for (const FluidParticle& p : block.particles) sum += p.velocity[1];
+        const auto count = static_cast<double>(block.particles.size());
+        EXPECT_NEAR(sum, is_stopped ? 1 - count : -count, 1e-3);
+        if (is_stopped) EXPECT_EQ(block.particles.back().velocity[1], -1);
+    }
 }
 
 TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
@@ -217,7 +240,8 @@ TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
     components.begin(floor.block.grid, system, floor.block.obstacles, {}, floor.block.particles,
                      {.liquids = liquid, .all = true});
     for (FluidParticle& p : floor.block.particles) p.velocity[0] = 3;
-    components.end({}, floor.block.obstacles, {}, liquid, floor.block.particles);
+    const std::vector<std::uint8_t> stopped(floor.block.particles.size(), 0);
+    components.end({}, floor.block.obstacles, {}, liquid, stopped, floor.block.particles);
     for (const FluidParticle& p : floor.block.particles) EXPECT_EQ(p.velocity[0], 3);
 }
 

@@ -141,12 +141,13 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
 }
 
 // Removes the velocity into the wall.
-void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const {
+void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) {
     const double inwards = std::min(0.0, dot(to_vec(particle.velocity) - wall.velocity, wall.normal));
+    is_stopped_ = is_stopped_ || (inwards < 0 && !wall.is_free);
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] -= static_cast<float>(wall.normal[axis] * inwards);
 }
 
-void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
+void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) {
     const float gap = settings_.wall_gap;
     // The grid has a moving obstacle at its place in the middle of the part.
     const int owner = grid_.obstacle_owner[grid_.index(cell_at(grid_, particle.position))];
@@ -163,8 +164,9 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
     const Vec3 outside = inside + normal * ((gap - distance) * grid_.cell_size());
     const Vec3 wall = obstacles_.velocity_at(owner, outside);
+    const bool is_free = mover != nullptr && mover->is_free();
     set_position(particle, pose.back(outside));
-    stop_at(particle, {normal, wall});
+    stop_at(particle, {normal, wall, is_free});
 
     // Where that does not lead out (the seam of two obstacles) the particle stops.
     const float now = distance_at(outside);
@@ -172,6 +174,7 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
     if (distance_at(stayed) < now) return;
     set_position(particle, pose.back(stayed));
+    is_stopped_ = is_stopped_ || !is_free;
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(wall[axis]);
 }
 
@@ -229,20 +232,21 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
             if (!bar(mover.probe, before.seen(from), seen_to, normal)) continue;
             any = true;
             to = after.back(seen_to);
-            stop_at(particle, {normal, moving.velocity_at(seen_to)});
+            stop_at(particle, {normal, moving.velocity_at(seen_to), mover.is_free()});
         }
         if (!any) break;
     }
     set_position(particle, to);
 }
 
-void ParticleCollider::move(FluidParticle& particle, const float* end) {
+bool ParticleCollider::move(FluidParticle& particle, const float* end) {
+    is_stopped_ = false;
     // No particle moves farther than the tiles around the particles reach, nor by more than two cells at once.
     const auto longest = static_cast<float>(max_travel * grid_.cell_size());
     float displacement[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         displacement[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
-        if (!std::isfinite(displacement[axis])) return;  // the solver learns of it by the velocity
+        if (!std::isfinite(displacement[axis])) return false;  // the solver learns of it by the velocity
         size = std::max(size, std::fabs(displacement[axis]));
     }
     const int strides = 1 + static_cast<int>(size / (max_stride * static_cast<float>(grid_.cell_size())));
@@ -254,6 +258,7 @@ void ParticleCollider::move(FluidParticle& particle, const float* end) {
         }
         stride(particle, to, {i * piece, i + 1 < strides ? (i + 1) * piece : 1});
     }
+    return is_stopped_;
 }
 
 void ParticleCollider::stride(FluidParticle& particle, const float* to, const Span& when) {

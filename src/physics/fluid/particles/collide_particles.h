@@ -19,8 +19,9 @@ public:
                      double dt);
     /// Place at which a particle meets the grid: its own, restricted to its side of thin walls.
     std::array<float, 3> place_of(const FluidParticle& particle);
-    /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles allow.
-    void move(FluidParticle& particle, const float* end);
+    /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles allow. Returns whether what
+    /// does not move freely has taken any of its velocity.
+    bool move(FluidParticle& particle, const float* end);
     /// Whether the true shapes are queried there.
     [[nodiscard]] bool is_near_thin(const float* position) const;
 
@@ -29,16 +30,17 @@ private:
     struct Span {
         double first = 0, last = 1;
     };
-    /// A wall that was met: its normal and velocity.
+    /// A wall that was met.
     struct Wall {
         Vec3 normal, velocity;
+        bool is_free = false;  ///< moves by forces
     };
     void stride(FluidParticle& particle, const float* to, const Span& when);
-    void push_out(FluidParticle& particle, Vec3 before, const Span& when) const;
+    void push_out(FluidParticle& particle, Vec3 before, const Span& when);
     [[nodiscard]] bool sees(Vec3 from, Vec3 to);
     void sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when);
     [[nodiscard]] bool bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
-    void stop_at(FluidParticle& particle, const Wall& wall) const;
+    void stop_at(FluidParticle& particle, const Wall& wall);
     void look_around(const Bounds& swept);
 
     /// Place of a moving obstacle at a time of the part, and places beside it transformed to the middle of the part.
@@ -58,6 +60,7 @@ private:
         double turn = 0;   ///< the same of a point of it by rotation alone, over its distance from the centre
         [[nodiscard]] Pose at(double fraction) const;
         [[nodiscard]] Pose posed(Vec3 center, Quat rotation) const;
+        [[nodiscard]] bool is_free() const { return obstacle->obstacle->inverse_mass > 0; }
         [[nodiscard]] bool is_met() const { return obstacle->is_in_reach && !obstacle->is_small; }
     };
 
@@ -68,6 +71,7 @@ private:
     std::vector<Mover> moving_;  // as obstacles.moving()
     Bounds seen_;                // the probes are prepared for this box, and those of these indices meet it
     std::vector<std::size_t> near_fixed_, near_moving_;
+    bool is_stopped_ = false;  // what move() returns
 };
 
 }  // namespace embody::physics::fluid

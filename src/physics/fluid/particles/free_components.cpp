@@ -144,7 +144,8 @@ void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, 
 }
 
 void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed,
-                         const Mixture& liquids, std::vector<FluidParticle>& particles) const {
+                         const Mixture& liquids, std::span<const std::uint8_t> stopped,
+                         std::vector<FluidParticle>& particles) const {
     if (components_.empty()) return;
     const double particle_mass = liquids.first().density * liquids.first().particle_volume;
     const double min_turned = settings_.min_turned_particles;
@@ -154,8 +155,9 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const Imm
     std::vector<Component> now(components_.size(), Component{.squares = Mat3::zero()});
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (component_of_particle_[i] < 0) continue;
-        now[static_cast<std::size_t>(component_of_particle_[i])].add(
-            to_vec(particles[i].position), to_vec(particles[i].velocity), liquids.relative_mass(i));
+        Component& its = now[static_cast<std::size_t>(component_of_particle_[i])];
+        its.add(to_vec(particles[i].position), to_vec(particles[i].velocity), liquids.relative_mass(i));
+        its.is_free = its.is_free && stopped[i] == 0;
     }
     std::vector<Correction> corrections(components_.size());  // so far as momenta over the particle mass
     for (std::size_t component = 0; component < components_.size(); ++component) {
@@ -184,6 +186,10 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, const Imm
     for (std::size_t component = 0; component < components_.size(); ++component) {
         const Component& after = now[component];
         if (after.count == 0) continue;
+        if (!after.is_free) {
+            corrections[component] = {};
+            continue;
+        }
         corrections[component].linear = corrections[component].linear / after.mass;
         corrections[component].angular = static_cast<double>(after.count) < min_turned
                                              ? Vec3{}

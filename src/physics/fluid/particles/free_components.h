@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "math/mat3.h"
@@ -30,10 +31,11 @@ public:
     void begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
                const ImmersedPoints& immersed, const std::vector<FluidParticle>& particles, const Options& options);
     /// For the same particles after they moved: restores the momentum of each component, less what its bodies and the
-    /// points in it were given, and likewise the angular momentum about its centre. `change`: of all velocities by
-    /// gravity, m/s.
+    /// points in it were given, and likewise the angular momentum about its centre. One of which what does not move
+    /// freely has stopped a particle on its path is free no more. `change`: of all velocities by gravity, m/s;
+    /// `stopped`: by particle.
     void end(Vec3 change, const FluidObstacles& obstacles, const ImmersedPoints& immersed, const Mixture& liquids,
-             std::vector<FluidParticle>& particles) const;
+             std::span<const std::uint8_t> stopped, std::vector<FluidParticle>& particles) const;
 
 private:
     /// Sums over a component's particles, m and m/s.
