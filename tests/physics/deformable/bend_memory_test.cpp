@@ -23,10 +23,10 @@ struct BentSheet {
     std::vector<Vec3> position = definition.nodes;
     TaskPool workers{1};
 
-    BentSheet(double friction, double yield, double direction)
+    BentSheet(double friction, double yield, double bend_direction)
         : memory(make_bend_elements(definition.nodes, std::get<Cloth>(definition.matter)), definition.nodes.size(),
                  friction, yield),
-          direction(direction) {}
+          direction(bend_direction) {}
 
     double area() const {
         double sum = 0;
