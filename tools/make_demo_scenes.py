@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
-ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal. The others there were built by hand.
+ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an awning
+under a tap. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -271,9 +272,33 @@ def sheet_metal() -> dict:
     return scene("Sheet metal", "A ball falls on two tongues of steel: one springs back, the other stays bent. The difference is the Fold limit in the panel.", [1.1, 1.25, 1.5], [0, 0.6, 0], entities)
 
 
+def awning() -> dict:
+    """A cloth between four posts over a tub, on which a tap pours 8 litres in 8 s: they gather in its sag and drip through."""
+    half, height, tub, rim, wall = 0.4, 0.9, 0.22, 0.1, 0.02
+    clay, wood = [0.72, 0.42, 0.3], [0.5, 0.36, 0.22]
+    entities = [{**fixed("Floor", [2, 0.1, 2], [0, -0.1, 0], [0.5, 0.55, 0.48], friction_static=0.6, friction_dynamic=0.5), "finish": "tiles"}]
+    for side in (-1, 1):
+        entities.append(fixed("Tub", [wall, rim, tub + 2 * wall], [side * (tub + wall), rim, 0], clay))
+        entities.append(fixed("Tub", [tub, rim, wall], [0, rim, side * (tub + wall)], clay))
+        for back in (-1, 1):
+            entities.append(fixed("Post", [0.015, height / 2, 0.015], [side * (half + 0.015), height / 2, back * (half + 0.015)], wood))
+    pins = [{"position": [x * half, 0, z * half], "radius": 0.06} for x in (-1, 1) for z in (-1, 1)]
+    entities.append(box("Cloth", [half, 0.0004, half], [0, height, 0], [0.86, 0.8, 0.62], pins=pins, category="cloth", attributes={"kind": "cloth", "area_density": 0.25, "cloth_nodes": 350}))
+    pipe = [{"type": "cylinder", "radius": 0.02, "half_height": 0.35}, {"type": "box", "half_extents": [0.014, 0.014, 0.2], "position": [0, 0.34, 0.2]},
+            {"type": "cylinder", "radius": 0.026, "half_height": 0.015, "position": [0, 0.32, 0.4]}]
+    entities.append({"name": "Tap", "shape": {"type": "compound", "children": pipe}, "pose": {"position": [0, height, -half - 0.1]}, "color": [0.6, 0.62, 0.65], "locked": True,
+                     "attributes": {"kind": "static"}, "tap": {"litres_per_minute": 60, "radius": 0.025, "position": [0, 0.28, 0.4]}})
+    tap = len(entities)
+    entities.append(box("Water", [tub, 0.05, tub], [0, 0.05, 0], [0.6, 0.8, 0.9], starts_empty=True, attributes={"kind": "fluid", "particle_budget": 3000}))
+    actions = [{"name": "shut the tap", "trigger": {"type": "time", "time": 8}, "receiver": {"index": tap}, "effect": {"type": "set_open", "open": False}}]
+    actions += [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": tap}, "effect": {"type": "set_open", "open": is_open}, "once": False}
+                for name, is_open in (("Tap on", True), ("Tap off", False))]
+    return scene("Awning", "A tap pours water on a cloth. It gathers where the cloth sags, and drips through into the tub until the cloth is dry.", [1.35, 1.3, 1.5], [0, 0.6, 0], entities, actions=actions)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -209,6 +209,18 @@ def trampoline(run: Run):
             yield f"its rim has come off at {before}"
 
 
+def awning(run: Run):
+    (water,), (cloth,) = run.called("Water"), run.called("Cloth")
+    lowest = lambda line: min(p[1] for p in run.points(cloth, line))
+    held = lambda line: sum(p[1] > lowest(line) - 0.03 and max(abs(p[0]), abs(p[2])) < 0.4 for p in run.points(water, line)) / len(run.points(water, line))
+    full = run.seconds[8]
+    yield from within("sag of the cloth under the water beyond that of the dry cloth", lowest(run.seconds[-1]) - lowest(full), 0.05, 0.3)
+    yield from within("share of the water that the cloth holds after 8 s", held(full), 0.15, 0.8)
+    yield from within("share that it holds at the end", held(run.last), 0, 0.02)
+    tub = [p for p in run.points(water) if max(abs(p[0]), abs(p[2])) < 0.23 and p[1] < 0.2]
+    yield from within("share of the water in the tub at the end", len(tub) / len(run.points(water)), 0.98, 1)
+
+
 def sheet_metal(run: Run):
     # Tongues of 0.6 m, held at 0.7 m: by its weight alone one hangs 4 cm.
     lowest = {name: min(p[1] for p in run.points(run.called(name)[0])) for name in ("Spring steel", "Soft steel")}
@@ -226,6 +238,7 @@ def wrecking_ball(run: Run):
 
 # Seconds to simulate, whether all is asleep afterwards, and the law.
 SCENES = {
+    "awning": (20, False, awning),
     "basin": (30, False, basin),
     "bathtub": (3, False, bathtub),
     "breaking_plates": (4, False, breaking_plates),

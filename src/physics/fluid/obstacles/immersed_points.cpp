@@ -174,7 +174,31 @@ double ImmersedPoints::speed_before(const FacePart& part) const {
     return speed + (point.support[face.axis] * dt_ * fraction + face.filled * part.lag) / mass;
 }
 
+// Points of sheets around which there is no particle have neither drag nor pressure; of solids the pressure goes on
+// within.
+void ImmersedPoints::leave_out_dry(const FluidGrid& grid) {
+    std::vector<std::uint8_t> stays(points_.size(), 0), is_used(faces_.size(), 0);
+    for (const FacePart& part : parts_) {
+        const Face& face = faces_[part.face];
+        if (points_[part.point].form.form != DragForm::sheet || grid.known[face.axis][face.cell]) stays[part.point] = 1;
+    }
+    std::erase_if(parts_, [&](const FacePart& part) { return stays[part.point] == 0; });
+    std::erase_if(on_grid_, [&](std::uint32_t point) { return stays[point] == 0; });
+    for (const FacePart& part : parts_) is_used[part.face] = 1;
+    std::vector<std::uint32_t> place(faces_.size());
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        std::int32_t& at = face_at_[static_cast<std::size_t>(faces_[i].axis)][static_cast<std::size_t>(faces_[i].cell)];
+        at = is_used[i] != 0 ? static_cast<std::int32_t>(count) : -1;
+        place[i] = count;
+        if (is_used[i] != 0) faces_[count++] = faces_[i];
+    }
+    faces_.resize(count);
+    for (FacePart& part : parts_) part.face = place[part.face];
+}
+
 void ImmersedPoints::find_conductance(double dt, const Mixture& liquids, FluidGrid& grid) {
+    leave_out_dry(grid);
     if (parts_.empty()) return leave(grid);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         grid.liquid_conductance[axis] = grid.open[axis];

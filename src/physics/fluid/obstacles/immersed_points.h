@@ -115,6 +115,7 @@ private:
     }
     bool add_parts(std::uint32_t point, FluidGrid& grid);
     void spread_volume(std::uint32_t point, FluidGrid& grid);
+    void leave_out_dry(const FluidGrid& grid);
 
     Vec3 origin_;
     double cell_ = 0;
