@@ -293,7 +293,7 @@ def awning() -> dict:
     actions = [{"name": "shut the tap", "trigger": {"type": "time", "time": 8}, "receiver": {"index": tap}, "effect": {"type": "set_open", "open": False}}]
     actions += [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": tap}, "effect": {"type": "set_open", "open": is_open}, "once": False}
                 for name, is_open in (("Tap on", True), ("Tap off", False))]
-    return scene("Awning", "A tap pours water on a cloth. It gathers where the cloth sags, and drips through into the tub until the cloth is dry.", [1.35, 1.3, 1.5], [0, 0.6, 0], entities, actions=actions)
+    return scene("Awning", "A tap pours water on a cloth. It gathers where the cloth sags, and drips through into the tub until the cloth is dry.", [0.55, 1.75, 1.75], [0, 0.55, 0], entities, actions=actions)
 
 
 def main() -> int:
