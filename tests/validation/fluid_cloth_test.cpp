@@ -102,6 +102,31 @@ TEST(FluidCloth, SheetsThatWaterFallsOnGiveItNoEnergy) {
     }
 }
 
+// Liquids of different cells, one at each half of a sheet: what the second one finds leaves what the first one did.
+TEST(FluidCloth, TwoLiquidsOnOneSheetKeepTheCommonMomentum) {
+    Random random(11);
+    for (int trial = 0; trial < 4; ++trial) {
+        SCOPED_TRACE(trial);
+        auto world = make_world({.gravity = {}, .air_density = 0, .deformable_substeps = 1});
+        DeformableDefinition sheet = cloth_rectangle(0.5, 0.2, 0.04, {.area_density = random.between(0.1, 1)});
+        const DeformableHandle cloth = world->create_deformable(sheet).value();
+        double thrown = 0;
+        for (const double side : {-1, 1}) {
+            const double speed = random.between(1, 3), x = side * 0.16;
+            const FluidHandle water = world
+                                          ->create_fluid({.boxes = {{{x - 0.06, 0.02, -0.06}, {x + 0.06, 0.1, 0.06}}},
+                                                          .velocity = {0, -speed, 0},
+                                                          .cell_size = side < 0 ? 0.02 : 0.03})
+                                          .value();
+            thrown += volume_of(*world, water) * water_density * speed;
+        }
+        const Vec3 first = world->conserved().linear_momentum;
+        for (int i = 0; i < 15; ++i) world->step();
+        EXPECT_LT(length(world->conserved().linear_momentum - first), 3e-3 * thrown);
+        EXPECT_LT(world->center_of_mass(cloth).y, -0.05);
+    }
+}
+
 // In and above a pool, or over a box that stands in it: no energy comes in, and all comes to rest.
 TEST(FluidCloth, SheetsInAPoolGiveItNoEnergyAndSettle) {
     Random random(10);

@@ -121,10 +121,11 @@ std::vector<Vec3> SheetResponse::free_velocities(Sheet& sheet, double h, const I
 bool SheetResponse::solve(const Sheet& sheet, double h, const std::vector<Vec3>& free, std::vector<Vec3>& moves) const {
     DeformableRecord& record = world_.immersed.records.at(sheet.part.slot);
     const Nodes& nodes = record.nodes();
+    const std::vector<Vec3> by_others = nodes.force;  // liquids that have moved before this one; may be empty
     std::vector<Vec3> force(nodes.size());
     std::vector<NodeFlow> flow(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        force[i] = (sheet.pressed[i] + sheet.by_liquid[i]) / h;
+        force[i] = nodes.force_on(i) + (sheet.pressed[i] + sheet.by_liquid[i]) / h;
         flow[i] = {sheet.bound[i] / h, free[i], {}};
         moves[i] = h * nodes.mean_velocity[i];
     }
@@ -140,7 +141,7 @@ bool SheetResponse::solve(const Sheet& sheet, double h, const std::vector<Vec3>&
     ClothSolver& solver = world_.immersed.pair_solver;
     solver.set(substep.settings.cloth);
     const int iterations = solver.solve(std::span(&system, 1), {}, {}, {}, moves, {}, world_.workers);
-    record.set_liquid_force({});
+    record.set_liquid_force(by_others);
     record.set_flow({});
     return iterations != ClothSolver::not_finite;
 }
