@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
-ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal. The others there were built by hand.
+ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an air bed. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -271,9 +271,29 @@ def sheet_metal() -> dict:
     return scene("Sheet metal", "A ball falls on two tongues of steel: one springs back, the other stays bent. The difference is the Fold limit in the panel.", [1.1, 1.25, 1.5], [0, 0.6, 0], entities)
 
 
+def air_bed() -> dict:
+    """An air bed of woven PVC of 0.35 mm, two boxes and a beach ball that fall on it, and buttons that pump it up and let air out.
+
+    E t = 30 MPa * 0.35 mm = 10 kN/m. Air that is let out leaves the pressure of the rest volume near that of the room."""
+    weave = {"kind": "cloth", "thickness": 0.00035, "bend_friction": 0, "damping_rayleigh": 0.003}
+    entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62])]
+    entities.append(box("Air bed", [0.7, 0.11, 0.4], [0, 0.112, 0], [0.24, 0.42, 0.7], category="air mattress",
+                        attributes={**weave, "area_density": 0.45, "stretch_stiffness": 1e4, "shear_stiffness": 4000, "bend_stiffness": 1e-4, "cloth_nodes": 500, "internal_pressure": 6000,
+                                    "friction_static": 0.6, "friction_dynamic": 0.5}))
+    bed = len(entities)
+    for number, (x, mass) in enumerate(((-0.35, 3), (0.1, 8))):
+        entities.append(box(f"Box {number + 1}", [0.12, 0.1, 0.12], [x, 0.7 + 0.3 * number, 0], hue(number / 3), turn([0, 1, 0], 20 * number), attributes={"mass": mass, "restitution": 0}))
+    entities.append(sphere("Beach ball", 0.17, [0.5, 1.2, 0.05], [0.9, 0.5, 0.2], category="beach ball",
+                           attributes={**weave, "thickness": 0.0002, "area_density": 0.26, "stretch_stiffness": 6000, "shear_stiffness": 2500, "bend_stiffness": 2e-5, "cloth_nodes": 300,
+                                       "internal_pressure": 4000, "damping_rayleigh": 0.001}))
+    actions = [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": bed}, "effect": {"type": "set_attribute", "name": "internal_pressure", "value": pressure}, "once": False}
+               for name, pressure in (("Pump", 12000), ("Let out", 200))]
+    return scene("Air bed", "Boxes and a beach ball fall on an air bed; both are closed cloth with gas inside (Internal pressure). Buttons pump the bed up and let air out.", [1.6, 1.3, 1.9], [0, 0.3, 0], entities, actions=actions)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, air_bed):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -280,6 +280,7 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     cloth.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
     cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
+    if (is_closed(cloth)) cloth.internal_pressure = number_or_standard(attributes, "internal_pressure");
     deformable.matter = std::move(cloth);
     return deformable;
 }

@@ -57,7 +57,7 @@ struct SheetMesh {
 };
 
 /// Cloth of these triangles, without pose. Its area density makes its mass that of the attributes; a thickness above
-/// the length of an edge is reduced to that length. The error says where the mass needs a density that no cloth has.
+/// the length of an edge is reduced to that length; only closed sheets hold gas. The error says where the mass needs a density that no cloth has.
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy = nullptr);
 
