@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
-ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal. The others there were built by hand.
+ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an air bed and a beach ball. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -271,9 +271,22 @@ def sheet_metal() -> dict:
     return scene("Sheet metal", "A ball falls on two tongues of steel: one springs back, the other stays bent. The difference is the Fold limit in the panel.", [1.1, 1.25, 1.5], [0, 0.6, 0], entities)
 
 
+def air_bed() -> dict:
+    """An air bed and a beach ball of PVC film of 0.3 mm: 0.4 kg/m2, 15 MPa * 0.3 mm = 4.5 kN/m. Boxes fall on the bed; the ball bounces on the floor."""
+    film = {"kind": "cloth", "area_density": 0.4, "thickness": 0.0003, "stretch_stiffness": 4500, "shear_stiffness": 1700, "bend_stiffness": 3e-5, "bend_friction": 0,
+            "damping_rayleigh": 0.002, "friction_static": 0.6, "friction_dynamic": 0.5}
+    entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62])]
+    entities.append(box("Air bed", [0.5, 0.09, 0.35], [0, 0.14, 0], [0.25, 0.5, 0.8], category="air mattress", attributes={**film, "inflation": 1500, "cloth_nodes": 500}))
+    entities += [box("Box", [0.1, 0.08, 0.1], [x, height, z], hue(part), attributes={"mass": mass, "restitution": 0})
+                 for part, (x, height, z, mass) in enumerate(((-0.2, 0.7, 0, 2), (0.2, 1.0, 0.08, 4)))]
+    entities.append(sphere("Beach ball", 0.2, [1.0, 1.2, 0], [0.9, 0.35, 0.3], category="beach ball",
+                           attributes={**film, "inflation": 2000, "cloth_nodes": 400, "drag_coefficient": 0.47}))
+    return scene("Air bed", "Gas fills an air bed, on which boxes fall, and a beach ball, which bounces. Inflation in the panel is its pressure.", [1.6, 1.3, 2.0], [0.3, 0.4, 0], entities)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, air_bed):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -267,6 +267,11 @@ void add_soft_and_cloth(Rows& rows) {
     cloth.number({"bend_yield", "C", "Fold limit",
                   "Curvature beyond which a fold stays for good, as in paper, foil and sheet metal."},
                  "1/m", infinity, 0, infinity);
+    cloth.number(
+        {"inflation", "C", "Inflation",
+         "Pressure of the gas inside above that of the air, before the sheet is stretched. Makes balls, air beds "
+         "and balloons of things that enclose a volume; 0 is no gas."},
+        "Pa", 0, 0, 1e7);
     cloth.whole({"cloth_nodes", "C", "Nodes",
                  "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},
                 1000, 20, 20000);

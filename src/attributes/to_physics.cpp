@@ -278,6 +278,7 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     cloth.bend_stiffness = number_or_standard(attributes, "bend_stiffness");
     cloth.bend_friction = number_or_standard(attributes, "bend_friction");
     cloth.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
+    cloth.inflation = number_or_standard(attributes, "inflation");
     cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
     deformable.matter = std::move(cloth);

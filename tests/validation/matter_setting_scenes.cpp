@@ -60,10 +60,12 @@ GoldenScene loaded_sheets() {
     return scene;
 }
 
-// A thick sheet falls over a small ball, another over the edge of a box.
+// A thick sheet falls over a small ball, another over the edge of a box; a ball with gas falls on a plate.
 GoldenScene thick_sheets() {
     GoldenScene scene{make_world()};
     World& world = *scene.world;
+    add_box(world, {0.3, 0.05, 0.3}, {.kind = still, .position = {-2, 0, 0}});
+    add(world, cloth_sphere(0.15, 0.07, {.stretch_stiffness = 5000, .inflation = 3000}), {-2, 0.25, 0}, {0, -2, 0});
     auto felt = cloth_rectangle(0.3, 0.3, 0.03, linen);
     felt.contact_radius = 0.02;
     add_ball(world, 0.08, {.kind = still, .position = {0, 0, 0}});

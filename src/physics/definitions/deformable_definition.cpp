@@ -137,8 +137,41 @@ Result<void> check_matter(const DeformableDefinition& definition, const SoftSoli
                        check_number("internal_pressure", solid.internal_pressure, 0, 1e8, "Pa"));
 }
 
+// Whether gas can be inside: each edge belongs to two triangles, which go along it in opposite directions.
+Result<void> check_closed(const DeformableDefinition& definition, const Cloth& cloth) {
+    const char* const close_it = "close the mesh, or leave it without gas (0)";
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    double volume = 0;
+    for (const auto& t : cloth.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
+        const Vec3 origin = definition.nodes[cloth.triangles[0][0]];
+        volume += dot(definition.nodes[t[0]] - origin,
+                      cross(definition.nodes[t[1]] - origin, definition.nodes[t[2]] - origin)) /
+                  6;
+    }
+    std::ranges::sort(edges);
+    const auto name_of = [](const std::array<std::uint32_t, 2>& edge) {
+        return "the edge from node " + std::to_string(edge[0]) + " to node " + std::to_string(edge[1]);
+    };
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (i > 0 && edges[i] == edges[i - 1])
+            return Error{"inflation", name_of(edges[i]) + " has triangles that do not turn the same way",
+                         "orient the triangles counter-clockwise from outside, two at each edge"};
+        if (!std::ranges::binary_search(edges, std::array{edges[i][1], edges[i][0]}))
+            return Error{"inflation", "the sheet is open: " + name_of(edges[i]) + " has one triangle", close_it};
+    }
+    if (!(volume > 0))
+        return Error{"inflation", "the sheet encloses no volume",
+                     "orient the triangles counter-clockwise from outside"};
+    return {};
+}
+
 Result<void> check_matter(const DeformableDefinition& definition, const Cloth& cloth) {
     if (auto result = check_elements(definition, "triangles", cloth.triangles); !result) return result;
+    if (auto result = check_number("inflation", cloth.inflation, 0, 1e7, "Pa"); !result) return result;
+    if (cloth.inflation > 0) {
+        if (auto result = check_closed(definition, cloth); !result) return result;
+    }
     return first_error(check_number("area_density", cloth.area_density, 1e-4, 1000, "kg/m2"),
                        check_number("thickness", cloth.thickness, 1e-6, 0.1, "m"),
                        check_number("stretch_stiffness", cloth.stretch_stiffness, 1e-3, 1e9, "N/m"),

@@ -40,6 +40,9 @@ struct Cloth {
     double bend_friction = 0;  ///< the most that friction between the threads resists bending with, as the curvature
                                ///< that the bend stiffness resists with as much, 1/m, 0 … 1e6
     double bend_yield = std::numeric_limits<double>::infinity();  ///< curvature beyond which a fold stays, 1/m, > 0
+    /// Pressure above that of the air around which gas inside has in the volume at rest, Pa, 0 … 1e7; 0: no gas. With
+    /// gas each edge has two triangles, counter-clockwise from outside.
+    double inflation = 0;
 };
 
 /// A line of nodes, each joined to the next: rope, cable, thread. Straight at rest.

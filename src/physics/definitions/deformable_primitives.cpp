@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace embody::physics {
@@ -88,6 +89,98 @@ DeformableDefinition cloth_disc(double radius, double edge, Cloth cloth) {
     }
     sheet.matter = std::move(cloth);
     return sheet;
+}
+
+DeformableDefinition cloth_sphere(double radius, double edge, Cloth cloth) {
+    // The corners (0, ±1, ±φ) turned round the axes, and the faces between them.
+    constexpr double phi = std::numbers::phi;
+    std::vector<Vec3> corners;
+    for (const double one : {-1.0, 1.0}) {
+        for (const double far : {-phi, phi})
+            corners.insert(corners.end(), {{0, one, far}, {one, far, 0}, {far, 0, one}});
+    }
+    const auto are_neighbours = [&](std::size_t a, std::size_t b) { return length(corners[a] - corners[b]) < 2.1; };
+    const double arc = std::atan(2.0);  // between neighbours
+    const int rows = std::max(1, static_cast<int>(std::lround(radius * arc / edge)));
+
+    DeformableDefinition sphere;
+    std::map<std::array<int, 12>, std::uint32_t> number;  // of a node by its weights of the corners, in rows
+    const auto node_at = [&](const std::array<std::size_t, 3>& face, int b, int c) {
+        std::array<int, 12> weight{};
+        weight[face[0]] = rows - b - c;
+        weight[face[1]] = b;
+        weight[face[2]] = c;
+        const auto [place, is_new] = number.try_emplace(weight, static_cast<std::uint32_t>(sphere.nodes.size()));
+        if (is_new) {
+            Vec3 sum;
+            for (std::size_t k = 0; k < 12; ++k) sum += static_cast<double>(weight[k]) * corners[k];
+            sphere.nodes.push_back(radius * normalized(sum));
+        }
+        return place->second;
+    };
+    cloth.triangles.clear();
+    for (std::size_t i = 0; i < 12; ++i) {
+        for (std::size_t k = i + 1; k < 12; ++k) {
+            for (std::size_t l = k + 1; l < 12; ++l) {
+                if (!are_neighbours(i, k) || !are_neighbours(k, l) || !are_neighbours(l, i)) continue;
+                const bool is_outward = dot(corners[i], cross(corners[k], corners[l])) > 0;
+                const std::array<std::size_t, 3> face{i, is_outward ? k : l, is_outward ? l : k};
+                for (int b = 0; b < rows; ++b) {
+                    for (int c = 0; b + c < rows; ++c) {
+                        const std::uint32_t next_b = node_at(face, b + 1, c), next_c = node_at(face, b, c + 1);
+                        cloth.triangles.push_back({node_at(face, b, c), next_b, next_c});
+                        if (b + c + 1 < rows) cloth.triangles.push_back({next_b, node_at(face, b + 1, c + 1), next_c});
+                    }
+                }
+            }
+        }
+    }
+    sphere.matter = std::move(cloth);
+    return sphere;
+}
+
+DeformableDefinition cloth_box(Vec3 size, double edge, Cloth cloth) {
+    DeformableDefinition box;
+    std::array<int, 3> cells{};
+    for (int axis = 0; axis < 3; ++axis)
+        cells[static_cast<std::size_t>(axis)] = std::max(1, static_cast<int>(std::lround(size[axis] / edge)));
+    std::map<std::array<int, 3>, std::uint32_t> number;  // of a node by its place in cells
+    const auto node_at = [&](const std::array<int, 3>& cell) {
+        const auto [place, is_new] = number.try_emplace(cell, static_cast<std::uint32_t>(box.nodes.size()));
+        if (is_new) {
+            Vec3 node;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                node[static_cast<int>(axis)] =
+                    size[static_cast<int>(axis)] * (static_cast<double>(cell[axis]) / cells[axis] - 0.5);
+            box.nodes.push_back(node);
+        }
+        return place->second;
+    };
+    cloth.triangles.clear();
+    for (std::size_t across = 0; across < 3; ++across) {
+        const std::size_t u = (across + 1) % 3, v = (across + 2) % 3;
+        for (const bool is_upper : {false, true}) {
+            for (int i = 0; i < cells[u]; ++i) {
+                for (int k = 0; k < cells[v]; ++k) {
+                    const auto corner = [&](int right, int up) {
+                        std::array<int, 3> cell{};
+                        cell[across] = is_upper ? cells[across] : 0;
+                        cell[u] = i + right;
+                        cell[v] = k + up;
+                        return node_at(cell);
+                    };
+                    std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+                    if (!is_upper) std::swap(square[1], square[3]);
+                    // Diagonals by turns, so that the whole has no handedness.
+                    if ((i + k) % 2 == 1) std::ranges::rotate(square, square.begin() + 1);
+                    cloth.triangles.push_back({square[0], square[1], square[2]});
+                    cloth.triangles.push_back({square[0], square[2], square[3]});
+                }
+            }
+        }
+    }
+    box.matter = std::move(cloth);
+    return box;
 }
 
 DeformableDefinition rope_between(Vec3 from, Vec3 to, double segment, Rope rope) {

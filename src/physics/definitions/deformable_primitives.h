@@ -17,6 +17,12 @@ DeformableDefinition cloth_rectangle(double size_x, double size_z, double edge, 
 /// Rings of nearly equilateral triangles about a node in the middle (node 0).
 DeformableDefinition cloth_disc(double radius, double edge, Cloth cloth = {});
 
+/// A closed sphere about the origin, an icosahedron's faces in rows of triangles: one to blow up.
+DeformableDefinition cloth_sphere(double radius, double edge, Cloth cloth = {});
+
+/// A closed box about the origin, its faces in squares of two triangles: one to blow up.
+DeformableDefinition cloth_box(Vec3 size, double edge, Cloth cloth = {});
+
 /// A straight rope from `from` (node 0) to `to` (the last) in segments of equal length, `segment` or shorter.
 DeformableDefinition rope_between(Vec3 from, Vec3 to, double segment, Rope rope = {});
 

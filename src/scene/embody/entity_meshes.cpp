@@ -2,6 +2,7 @@
 #include "scene/embody/entity_meshes.h"
 
 #include "attributes/physical_kind.h"
+#include "scene/embody/closed_sheet.h"
 #include "scene/embody/shape_surface.h"
 #include "scene/embody/soft_primitive.h"
 
@@ -47,14 +48,29 @@ Result<catalog::SoftMesh> EntityMeshes::make_soft_mesh(const Entity& entity, int
 
 Result<const ThinForm*> EntityMeshes::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {
     const GeometryKey key = key_of(entity.geometry);
-    const std::string own = to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes));
+    const bool has_gas = is_sheet(attributes) && attributes.number("inflation", 0) > 0;
+    const std::string own =
+        to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes)) + (has_gas ? " closed" : "");
     auto& forms = forms_->thin_forms[key];
     auto found = forms.find(own);
     if (!key.is_shared() || found == forms.end()) {
-        found = forms.insert_or_assign(own, make_thin_form(entity, is_sheet(attributes), count_of(attributes))).first;
+        Result<ThinForm> form = has_gas ? make_closed_form(entity, count_of(attributes))
+                                        : make_thin_form(entity, is_sheet(attributes), count_of(attributes));
+        if (has_gas && !form.ok()) form = make_thin_form(entity, true, count_of(attributes));
+        found = forms.insert_or_assign(own, std::move(form)).first;
     }
     if (!found->second.ok()) return found->second.error();
     return &found->second.value();
+}
+
+// Of models and other shapes it is the surface of what fills them, which is closed whatever the model's mesh is like.
+Result<ThinForm> EntityMeshes::make_closed_form(const Entity& entity, int count) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        if (auto sheet = closed_sheet_of(*shape, count)) return ThinForm(std::move(*sheet));
+    }
+    const Result<catalog::SoftMesh> filling = make_soft_mesh(entity, 0);
+    if (!filling.ok()) return filling.error();
+    return ThinForm(closed_sheet_of(filling.value().mesh));
 }
 
 Result<ThinForm> EntityMeshes::make_thin_form(const Entity& entity, bool is_sheet, int count) {

@@ -22,7 +22,8 @@ public:
 
     /// The tetrahedra of an entity of kind soft.
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity, const attributes::AttributeSet& attributes);
-    /// The sheet of an entity of kind cloth, the line of one of kind rope.
+    /// The sheet of an entity of kind cloth, the line of one of kind rope. With inflation the sheet is the thing's
+    /// whole surface, closed, where that encloses anything.
     Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Forgets the meshes of a model.
     void forget(const std::string& key) {
@@ -33,6 +34,7 @@ public:
 private:
     Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity, int resolution);
     Result<ThinForm> make_thin_form(const Entity& entity, bool is_cloth, int count);
+    Result<ThinForm> make_closed_form(const Entity& entity, int count);
 
     KnownModels& models_;
     std::shared_ptr<FormCache> forms_;

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "attributes/physical_kind.h"
+#include "scene/embody/closed_sheet.h"
 #include "scene/embody/entity_body.h"
 
 namespace embody::scene {
@@ -28,6 +29,7 @@ GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& att
 // Equal keys mean equal nodes of a deformable.
 GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments", "soft_resolution"});
+    if (attributes.number("inflation", 0) > 0) key.words.emplace_back("closed");
     key.numbers.push_back(entity.scale);
     return key;
 }
@@ -83,6 +85,9 @@ EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeS
             if (!thin.ok()) return {false, {}, rigid_because + thin.error().why, {}};
             EntityForm form{true, deformable_key(entity, attributes), {}, {}};
             form.kept_fit = fit_of_mesh(form.points_key, entity.geometry, *thin.value());
+            const auto* sheet = std::get_if<attributes::SheetMesh>(thin.value());
+            if (sheet != nullptr && attributes.number("inflation", 0) > 0 && !is_closed(*sheet))
+                form.note = "has no gas inside, because it encloses no volume";
             return form;
         }
     }

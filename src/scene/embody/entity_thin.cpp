@@ -5,6 +5,7 @@
 
 #include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
+#include "scene/embody/closed_sheet.h"
 #include "scene/embody/entity_points.h"
 
 namespace embody::scene {
@@ -50,6 +51,7 @@ Result<physics::DeformableDefinition> EntityPoints::thin(const Entity& entity,
     Result<physics::DeformableDefinition> cloth =
         attributes::cloth_from_attributes(attributes, sheet, models_.taxonomy());
     if (!cloth.ok()) return in_attributes(cloth.error());
+    if (!is_closed(sheet)) std::get<physics::Cloth>(cloth.value().matter).inflation = 0;
     const double half = std::get<physics::Cloth>(cloth.value().matter).thickness / 2;
     cloth.value().contact_radius =
         std::clamp(std::max(half, sheet_radius_fraction * mean_edge(sheet)), sheet_min_radius, sheet_max_radius);

@@ -37,6 +37,7 @@ const SYNONYMS: Record<string, string> = {
   bend_stiffness: "fold drape stiffness",
   bend_friction: "fold crease swing hysteresis internal friction",
   bend_yield: "fold crease plastic dent crumple paper foil",
+  inflation: "inflate blow up gas air pressure balloon",
   dynamic_viscosity: "thick runny sticky syrup",
   friction_angle: "heap slope",
   slack: "loose long",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "physics/definitions/body_definition.h"
@@ -287,6 +288,24 @@ TEST(DeformablePrimitives, HaveTheSizeThatIsAskedFor) {
     }
     EXPECT_NEAR(volume, 6, 1e-9);
     EXPECT_EQ(std::get<SoftSolid>(brick.matter).tetrahedra.size(), 2u * 2 * 1 * 6);
+}
+
+TEST(DeformablePrimitives, ClosedSheetsEncloseTheirVolume) {
+    const auto volume_of = [](const DeformableDefinition& sheet) {
+        double volume = 0;
+        for (const auto& t : std::get<Cloth>(sheet.matter).triangles)
+            volume += dot(sheet.nodes[t[0]], cross(sheet.nodes[t[1]], sheet.nodes[t[2]])) / 6;
+        return volume;
+    };
+    for (const double edge : {0.5, 0.1, 0.02}) {
+        const DeformableDefinition ball = cloth_sphere(0.2, edge), box = cloth_box({0.3, 0.1, 0.2}, edge);
+        const auto triangles = std::get<Cloth>(ball.matter).triangles.size();
+        EXPECT_EQ(triangles, 2 * (ball.nodes.size() - 2)) << "as Euler's formula says of what is closed";
+        for (const Vec3 node : ball.nodes) EXPECT_NEAR(length(node), 0.2, 1e-12);
+        EXPECT_NEAR(volume_of(box), 0.006, 1e-12);
+        EXPECT_EQ(std::get<Cloth>(box.matter).triangles.size(), 2 * (box.nodes.size() - 2));
+    }
+    EXPECT_NEAR(volume_of(cloth_sphere(0.2, 0.02)), 4.0 / 3 * std::numbers::pi * 0.008, 3e-4);
 }
 
 TEST(StepReports, BeginWithNothing) {

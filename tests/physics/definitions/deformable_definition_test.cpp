@@ -77,6 +77,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
                                        {"bend_friction", &Cloth::bend_friction, 0, 1e6},
                                        {"rayleigh_damping", &Cloth::rayleigh_damping, 0, 100},
                                        {"drag_coefficient", &Cloth::drag_coefficient, 0, 10}});
+    check_ranges<Cloth>(cloth_sphere(0.2, 0.1), {{"inflation", &Cloth::inflation, 0, 1e7}});
     check_ranges<Rope>(good_rope(), {{"diameter", &Rope::diameter, 1e-4, 1},
                                      {"linear_density", &Rope::linear_density, 1e-6, 1e4},
                                      {"axial_stiffness", &Rope::axial_stiffness, 1e-3, 1e12},
@@ -112,6 +113,28 @@ TEST(DeformableMatter, ElementsHaveNodesAndAnExtent) {
     DeformableDefinition turned = good_solid();
     std::swap(std::get<SoftSolid>(turned.matter).tetrahedra[0][0], std::get<SoftSolid>(turned.matter).tetrahedra[0][1]);
     EXPECT_EQ(field(turned), "");
+}
+
+// Gas needs a sheet without holes whose triangles turn one way.
+TEST(DeformableMatter, GasIsRefusedInASheetThatIsNotClosed) {
+    const Cloth blown{.inflation = 1000};
+    for (const DeformableDefinition& good : {cloth_sphere(0.2, 0.1, blown), cloth_box({0.3, 0.1, 0.2}, 0.05, blown)}) {
+        EXPECT_EQ(field(good), "");
+        DeformableDefinition bad = good;
+        auto& triangles = std::get<Cloth>(bad.matter).triangles;
+        std::swap(triangles[1][0], triangles[1][1]);
+        EXPECT_EQ(field(bad), "inflation") << "one triangle turns the other way";
+        for (auto& triangle : triangles) std::swap(triangle[0], triangle[1]);
+        std::swap(triangles[1][0], triangles[1][1]);
+        EXPECT_EQ(field(bad), "inflation") << "all turn the other way";
+        bad = good;
+        std::get<Cloth>(bad.matter).triangles.pop_back();
+        EXPECT_EQ(field(bad), "inflation") << "a hole";
+        EXPECT_NE(validate(bad).error().message().find("is open"), std::string::npos);
+        std::get<Cloth>(bad.matter).inflation = 0;
+        EXPECT_EQ(field(bad), "");
+    }
+    EXPECT_EQ(field(cloth_rectangle(1, 0.5, 0.25, blown)), "inflation");
 }
 
 TEST(DeformableHolds, NameANodeThatNothingElseHolds) {

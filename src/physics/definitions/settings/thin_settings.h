@@ -38,6 +38,9 @@ struct ClothSettings {
     /// Stiffness with which friction in bending begins, over the bend stiffness. Source: curves of fabrics on
     /// Kawabata's tester come to their friction within a fraction of 1/cm. Test: Settings.AreNoticed.
     double friction_stiffness = 4;
+    /// Phase of an inflated sheet's bounce in a part of a substep in which it touches something, rad. Source: backward
+    /// Euler takes exp(-π phase) of a bounce's energy, half of it here. Test: Inflation.BallsBounce.
+    double max_bounce_phase = 0.2;
 };
 
 template <>
@@ -53,6 +56,7 @@ inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"same_layer_reach", &ClothSettings::same_layer_reach, 2, 1e3},
     Setting{"compliance_on_body", &ClothSettings::compliance_on_body, 1e-6, 1},
     Setting{"friction_stiffness", &ClothSettings::friction_stiffness, 1e-3, 1e3},
+    Setting{"max_bounce_phase", &ClothSettings::max_bounce_phase, 1e-3, 1e3, "rad"},
 };
 static_assert(setting_count<ClothSettings> == member_count<ClothSettings>(), "a setting is in no list");
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "physics/deformable/contact/free_motion.h"
@@ -43,7 +44,8 @@ void make_positive(double& a, double& b, double& c) {
     b = high * b / radius / 2;
 }
 
-// Twice the area over the length of the hems, m: of a strip its width. Of a sheet without hems the root of its area.
+// Twice the area over the length of the hems, m: of a strip its width. A closed sheet has no hems at which vortices
+// grow.
 double mean_width(const std::vector<ClothTriangle>& triangles, const BendElements& bend,
                   const std::vector<Vec3>& nodes) {
     double area = 0, hems = 0;
@@ -54,7 +56,7 @@ double mean_width(const std::vector<ClothTriangle>& triangles, const BendElement
                 hems += length(nodes[triangles[t].node[(k + 1) % 3]] - nodes[triangles[t].node[(k + 2) % 3]]);
         }
     }
-    return hems > 0 ? 2 * area / hems : std::sqrt(area);
+    return hems > 0 ? 2 * area / hems : 0;
 }
 
 }  // namespace
@@ -98,6 +100,7 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition, const BendElement
     springs_.material = definition.material;
     springs_.attachments = definition.attachments;
     springs_.predicts_slip = springs_.forgets_depth = true;
+    if (cloth_.inflation > 0) gas_.emplace(cloth_.inflation, cloth_.triangles, definition.nodes);
     make_pattern(bending_);
     layers_.emplace(cloth_.triangles, definition.nodes);
 }
@@ -253,6 +256,56 @@ void ClothSheet::foresee_bending(const Substep& substep, std::span<const Vec3> m
     bend_memory_.foresee(nodes_.position, foreseen_, normals_, friction_stiffness_, workers);
 }
 
+// Gas of the pressure p (gauge) pushes with p g, g = ∂V/∂x. Its stiffness is -∂p/∂V g gᵀ - p ∂g/∂x: the second part
+// turns the push with the surface. Tension without it would hold what is inflated against every turn.
+void ClothSheet::find_gas(const Substep& substep, std::span<const Vec3> moves) {
+    if (!gas_) return;
+    gas_moves_.assign(nodes_.size(), {});
+    std::ranges::copy(moves, gas_moves_.begin());
+    std::vector<Vec3> places = nodes_.position;
+    for (std::size_t i = 0; i < moves.size(); ++i) places[i] += moves[i];
+    gas_->measure(cloth_.triangles, places, substep.settings.solid.min_gas_fraction);
+    gas_stiffness_ = {gas_->slope(), gas_->stiffness()};
+    gas_growth_ = 0;
+    for (std::size_t i = 0; i < moves.size(); ++i) gas_growth_ += dot(gas_->slope()[i], moves[i]);
+}
+
+// A ball of radius r that is pressed by s on a plane touches it on about 2π r s, so the gas has the stiffness 2π r p.
+double ClothSheet::bounce_stiffness() const {
+    if (!gas_) return 0;
+    const double radius = std::cbrt(3 * gas_->volume() / (4 * std::numbers::pi));
+    return 2 * std::numbers::pi * radius * std::max(0.0, gas_->gauge());
+}
+
+// The mean velocity is that at half time of the last substep: of a fall in substeps of changing length it must follow
+// to half of this one's length before this one. Without it a ball gains or loses g h/2 where parts begin and end.
+void ClothSheet::follow_fall(const Substep& substep) {
+    if (gas_ && is_flying_ && last_h_ != substep.h) {
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (nodes_.inverse_mass[i] > 0) nodes_.mean_velocity[i] += (last_h_ - substep.h) / 2 * substep.gravity;
+        }
+    }
+    last_h_ = substep.h;
+}
+
+// The moves of a rigid body with the sheet's momenta: what is inflated has its equations made about these, where its
+// forces are in balance as before. Moves along the tangents would stretch it by half of the turn's square. Its mean
+// velocities, along the last chords, turn as well: by backward Euler each turn of θ would take 1 - cos θ of the spin.
+std::vector<Vec3> ClothSheet::turn_rigidly(double h) {
+    const WholeMotion motion = motion_of_whole(nodes_);
+    // By arms at the end of the last chords and speeds along these the spin is sin θ / h.
+    const double angle = std::asin(std::min(1.0, h * length(motion.spin)));
+    const Quat turn = from_axis_angle(normalized(motion.spin, {0, 1, 0}), angle);
+    std::vector<Vec3> moves;
+    turned_.clear();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 arm = nodes_.position[i] - motion.center;
+        moves.push_back(h * motion.velocity + rotate(turn, arm) - arm);
+        turned_.push_back(motion.velocity + rotate(turn, nodes_.mean_velocity[i] - motion.velocity));
+    }
+    return moves;
+}
+
 // Travel through the air since it last turned round, m, with what comes to it.
 double ClothSheet::travel_with(std::size_t triangle, double added) const {
     const double travel = air_travel_[triangle];
@@ -272,7 +325,7 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
     const double inertia = nodes_.mass[i] / (h * h);
     const double friction = bend_memory_.added_stiffness(friction_stiffness_), bent = damped + friction;
     Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
-    Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
+    Vec3 load = nodes_.mass[i] / h * (gas_ ? turned_[i] : nodes_.mean_velocity[i]) + weight_[i];
 
     if (!nodes_.flow.empty()) {
         own += Mat3::diagonal(nodes_.flow[i].drag / h);
@@ -293,6 +346,8 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
             matrix_.set_far(i, far_element_[k], static_cast<float>(bent * bending_.value[k]));
     }
     if (bend_memory_.is_active()) load += cloth_.bend_stiffness * bend_memory_.force_on(i);
+    const double pressure = gas_ ? gas_->gauge() : 0;
+    if (gas_) load += (pressure + gas_stiffness_.stiffness * gas_growth_) * gas_->slope()[i];
     for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
         const Corner& corner = corners_[c];
         const ClothTriangle& triangle = triangles_[corner.triangle];
@@ -313,6 +368,7 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
             else
                 near[corner.element[other]] += to_block(block);
         }
+        if (gas_) add_gas_turn(corner, pressure, near, load);
         const Vec3 air = air_[corner.triangle];
         own += (1 / h) * symmetric_outer(air);
         load += dot(air, winds_[corner.triangle]) * air;
@@ -321,6 +377,19 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
     matrix_.diagonal[i] = to_block(own);
     node_stiffness_[i] = trace(own) / 3;
     rhs_[i] = load;
+}
+
+// A triangle of the corners a, b, c gives a the slope (b - a) × (c - a) / 6: of all triangles at a closed surface's
+// node the parts with a cancel. Its derivatives, and what these say about the moves that the gas was measured at.
+void ClothSheet::add_gas_turn(const Corner& corner, double pressure, std::span<Block> near, Vec3& load) const {
+    const std::array<std::uint32_t, 3>& node = triangles_[corner.triangle].node;
+    const std::size_t b = (corner.corner + 1) % 3, c = (corner.corner + 2) % 3;
+    const auto place = [&](std::size_t k) { return nodes_.position[node[k]] + gas_moves_[node[k]]; };
+    const Vec3 a = place(corner.corner);
+    const Mat3 by_b = (pressure / 6) * skew(place(c) - a), by_c = (-pressure / 6) * skew(place(b) - a);
+    near[corner.element[b]] += to_block(by_b);
+    near[corner.element[c]] += to_block(by_c);
+    load += by_b * gas_moves_[node[b]] + by_c * gas_moves_[node[c]];
 }
 
 void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
@@ -370,6 +439,7 @@ std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskP
 void ClothSheet::linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
     find_strains(substep, moves, workers);
     foresee_bending(substep, moves, workers);
+    find_gas(substep, moves);
     fill_rows(substep, workers);
 }
 
@@ -386,14 +456,36 @@ double ClothSheet::unforeseen_energy(std::span<const Vec3> moves, TaskPool& work
             unforeseen_[t] = triangles_[t].area * std::max(0.0, energy_of(to) - foreseen);
         }
     });
-    return std::accumulate(unforeseen_.begin(), unforeseen_.end(), 0.0);
+    return std::accumulate(unforeseen_.begin(), unforeseen_.end(), 0.0) + unforeseen_gas_energy(moves);
+}
+
+// The volume is a cubic function of the moves: even and odd parts tell its second derivative along them.
+double ClothSheet::unforeseen_gas_energy(std::span<const Vec3> moves) const {
+    if (!gas_) return 0;
+    std::vector<Vec3> to(nodes_.size()), back(nodes_.size());
+    double growth = 0;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        const Vec3 from = nodes_.position[i] + gas_moves_[i], change = moves[i] - gas_moves_[i];
+        to[i] = from + change;
+        back[i] = from - change;
+        growth += dot(gas_->slope()[i], change);
+    }
+    EnclosedGas gas = *gas_;
+    gas.measure(cloth_.triangles, back);
+    const double volume_back = gas.volume();
+    gas.measure(cloth_.triangles, to);
+    const double turned = (gas.volume() + volume_back) / 2 - gas_->volume();
+    const double foreseen =
+        gas_->gauge_energy() - gas_->gauge() * (growth + turned) + gas_->stiffness() / 2 * growth * growth;
+    return std::max(0.0, gas.gauge_energy() - foreseen);
 }
 
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
                        std::span<const TouchedBody> bodies, TaskPool& workers) {
     springs_.tolerance = substep.settings.thin_contact.change_tolerance;
-    linearize(substep, {}, workers);
+    follow_fall(substep);
+    linearize(substep, gas_ ? turn_rigidly(substep.h) : std::vector<Vec3>(), workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
@@ -411,6 +503,7 @@ void ClothSheet::finish(const Substep& substep, std::span<Vec3> moves, std::span
 
 void ClothSheet::move_nodes(std::span<const Vec3> moves, const Substep& substep, TaskPool& workers) {
     set_velocities(nodes_, moves, substep.h);
+    is_flying_ = !springs_.any_acts();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
         Vec3 added = -substep.h * winds_[t];
         for (const std::uint32_t node : triangles_[t].node) added += moves[node] / 3;
@@ -442,6 +535,11 @@ double ClothSheet::elastic_energy() const {
     }
     if (bend_memory_.is_active())
         energy += cloth_.bend_stiffness * bend_memory_.energy(nodes_.position, normals(), friction_stiffness_);
+    if (gas_) {
+        EnclosedGas gas = *gas_;
+        gas.measure(cloth_.triangles, nodes_.position);
+        energy += gas.gauge_energy();
+    }
     return energy;
 }
 

@@ -11,6 +11,7 @@
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/gas/enclosed_gas.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -30,10 +31,12 @@ public:
                TaskPool& workers);
     /// Finds system() about these moves (m), as in Newton's method. None: the place at the part's start.
     void linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
-    /// What stretch and shear take more for these moves than system() says, J: none of what they take less.
+    /// What stretch, shear and gas take more for these moves than system() says, J: none of what they take less.
     [[nodiscard]] double unforeseen_energy(std::span<const Vec3> moves, TaskPool& workers);
     /// The sheet's equations for the solve, those of the last linearize(), valid until the next begin().
-    [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
+    [[nodiscard]] SheetSystem system() {
+        return {&matrix_, rhs_, small_load_, fixed_, gas_ ? &gas_stiffness_ : nullptr};
+    }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] ClothLayers& layers() { return *layers_; }
     [[nodiscard]] const ClothLayers& layers() const { return *layers_; }
@@ -67,7 +70,11 @@ public:
     /// Takes contacts over from another sheet of as many nodes, and what bending has left where its triangles are as
     /// many, too.
     void go_on_from(const ClothSheet& other);
-    /// Present energy of stretch, shear and bending, and of its friction, J.
+    /// Stiffness of gas inside against what touches it, N/m. Without gas 0.
+    [[nodiscard]] double bounce_stiffness() const;
+    /// Whether no body touched or held it in the last substep.
+    [[nodiscard]] bool is_flying() const { return is_flying_; }
+    /// Present energy of stretch, shear and bending, of its friction, and of gas inside, J.
     [[nodiscard]] double elastic_energy() const;
     [[nodiscard]] BendMemory& bend_memory() { return bend_memory_; }
     [[nodiscard]] const BendMemory& bend_memory() const { return bend_memory_; }
@@ -106,7 +113,12 @@ private:
     [[nodiscard]] double travel_with(std::size_t triangle, double added) const;
     [[nodiscard]] double young_drag(std::size_t triangle, double added) const;
     void foresee_bending(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
+    void follow_fall(const Substep& substep);
+    [[nodiscard]] std::vector<Vec3> turn_rigidly(double h);
+    void find_gas(const Substep& substep, std::span<const Vec3> moves);
+    [[nodiscard]] double unforeseen_gas_energy(std::span<const Vec3> moves) const;
     void find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
+    void add_gas_turn(const Corner& corner, double pressure, std::span<Block> near, Vec3& load) const;
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
     // Distance of layers: as if a body of no thickness lay between them.
@@ -117,13 +129,14 @@ private:
     std::vector<ClothTriangle> triangles_;
     ScalarRows bending_;  // times bend stiffness, N/m
     BendMemory bend_memory_;
+    std::optional<EnclosedGas> gas_;  // about gas_moves_
     ClothMatrix matrix_;
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
     std::vector<double> near_bending_;        // of the blocks between neighbours
     std::vector<std::uint32_t> far_element_;  // of bending_'s elements: the index of each among the row's far elements
     TouchSprings springs_;
-    double width_ = 0;                // twice the area over the length of its hems, m
+    double width_ = 0;                // twice the area over the length of its hems, m; closed: 0
     std::vector<double> air_travel_;  // of each triangle through the air along its normal since it last turned round, m
     std::optional<ClothLayers> layers_;
     std::vector<std::uint8_t> fixed_;
@@ -135,7 +148,13 @@ private:
     double friction_stiffness_ = ClothSettings{}.friction_stiffness;
     std::vector<Vec3> foreseen_;  // moves about which bend_memory_ was asked
     std::vector<std::array<Vec3, 2>> normals_;
+    GasStiffness gas_stiffness_;
+    double gas_growth_ = 0;        // of the volume by gas_moves_, to first order about them, m³
+    std::vector<Vec3> gas_moves_;  // about which the gas was measured
+    std::vector<Vec3> turned_;     // of an inflated sheet: mean velocities turned with the whole, m/s
     bool is_frozen_ = false;
+    double last_h_ = 0;       // of the last substep, s; 0: none
+    bool is_flying_ = false;  // nothing held it then
 };
 
 }  // namespace embody::physics::deformable

@@ -48,7 +48,11 @@ double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
                                .quads = reinterpret_cast<float*>(quads.data())};
     double unused[slice_rows] = {};
     widest_kernels<ClothRowKernels>().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
-    double sum = 0;
+    double sum = 0, growth = 0;  // growth: of the volume, m³
+    for (std::size_t i = 0; i < moves.size() && sheet.gas != nullptr; ++i) {
+        if (sheet.fixed[i] == 0) growth += dot(sheet.gas->slope[i], moves[i]);
+    }
+    if (sheet.gas != nullptr) sum = sheet.gas->stiffness / 2 * growth * growth;
     for (std::size_t i = 0; i < moves.size(); ++i) {
         if (sheet.fixed[i] == 0) sum += dot(0.5 * to_vec3(force.at(i)) - sheet.rhs[i], moves[i]);
     }
@@ -140,6 +144,20 @@ void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<co
     curvatures_.back() = sum;
 }
 
+// Gas couples all nodes of its sheet by one number, the volume's growth along p. After add_springs().
+void ClothSolver::add_gas(std::span<const SheetSystem> sheets) {
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        const GasStiffness* gas = sheets[s].gas;
+        if (gas == nullptr) continue;
+        const std::span<const std::uint32_t> place = std::span(place_).subspan(sheet_first_[s], gas->slope.size());
+        double growth = 0;  // m³
+        for (std::size_t i = 0; i < place.size(); ++i) growth += dot(gas->slope[i], to_vec3(p_.at(place[i])));
+        for (std::size_t i = 0; i < place.size(); ++i)
+            q_.add(place[i], to_float4((gas->stiffness * growth) * gas->slope[i]));
+        curvatures_.back() += gas->stiffness * growth * growth;
+    }
+}
+
 // z = D⁻¹ r is done; now the bodies, and the effect of their moves on the nodes that they touch.
 void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     body_z_ = body_r_;
@@ -200,6 +218,7 @@ struct ClothSolver::WorkerSystem {
     bool is_first;
     IndexRange chunks;
     bool has_others = !of.coupled_.empty() || !of.factors_.empty();
+    bool has_gas = std::ranges::any_of(sheets, [](const SheetSystem& sheet) { return sheet.gas != nullptr; });
 
     // find_residual() has found r.
     GradientResidual begin() { return advance(0); }
@@ -215,9 +234,13 @@ struct ClothSolver::WorkerSystem {
 
     double multiply() {
         for_chunks([&](std::size_t c) { of.multiply_rows(sheets, c); });
-        if (has_others) {
+        if (has_others || has_gas) {
             barrier.wait();
-            if (is_first) of.add_springs(springs, bodies);
+            if (is_first) {
+                of.curvatures_.back() = 0;
+                if (has_others) of.add_springs(springs, bodies);
+                of.add_gas(sheets);
+            }
         }
         barrier.wait();
         return sum_of(of.curvatures_);
@@ -305,6 +328,7 @@ void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<c
         for (std::size_t c = range.first; c < range.last; ++c) multiply_rows(sheets, c);
     });
     add_springs(springs, bodies);
+    add_gas(sheets);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
             const std::uint32_t place = place_[sheet_first_[s] + i];

@@ -17,12 +17,19 @@
 
 namespace embody::physics::deformable {
 
+/// What gas inside a sheet adds to its matrix: stiffness · slope slopeᵀ.
+struct GasStiffness {
+    std::vector<Vec3> slope;  ///< ∂V/∂x of each node, m²; none: no gas
+    double stiffness = 0;     ///< Pa/m³
+};
+
 /// A sheet's part of the equations, an entry a node.
 struct SheetSystem {
     const ClothMatrix* matrix = nullptr;
     std::span<const Vec3> rhs;            ///< N
     std::span<const Vec3> small_load;     ///< N
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
+    const GasStiffness* gas = nullptr;    ///< null: none
 };
 
 /// The function that the equations minimise, for these moves, J, one number a node.
@@ -93,6 +100,7 @@ private:
     template <class Kernel>
     [[nodiscard]] double sum_of_chunk(std::size_t chunk, Kernel kernel);
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void add_gas(std::span<const SheetSystem> sheets);
     void precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_lines();
     void add_line_pulls();

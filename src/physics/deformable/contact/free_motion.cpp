@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/free_motion.h"
 
+#include "math/quat.h"
+
 namespace embody::physics::deformable {
 
 void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings) {
@@ -40,8 +42,13 @@ void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSe
         inertia += line_inertia * trace(inertia) * Mat3::identity();
         const Vec3 spin = solve(inertia, missing);
         if (!is_finite(spin) || length(spin) * h > settings.max_momentum_turn) return;
-        for_each_node(
-            [&](double, Vec3 position, Vec3, Vec3& move) { move += h * cross(spin, position + move - new_center); });
+        const Quat turn = from_axis_angle(normalized(spin, {0, 1, 0}), h * length(spin));
+        for (const FreePart& part : parts) {
+            for (std::size_t i = 0; i < part.moves.size(); ++i) {
+                const Vec3 arm = part.nodes->position[i] + part.moves[i] - new_center;
+                part.moves[i] += part.turns_rigidly ? rotate(turn, arm) - arm : h * cross(spin, arm);
+            }
+        }
     }
 }
 

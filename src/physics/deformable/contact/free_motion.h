@@ -17,6 +17,7 @@ struct FreePart {
     const Nodes* nodes = nullptr;
     std::vector<Vec3> given;
     std::span<Vec3> moves;
+    bool turns_rigidly = false;  ///< a turn must not stretch it: gas inside stands against that
 };
 /// For deformables that nothing but each other holds: changes their moves (of a substep of h seconds) by a small move
 /// and turn of the whole, so that momentum and angular momentum are those before plus what is given. Forces within and

@@ -478,7 +478,7 @@ void ThinGroupPart::keep_momenta() {
         FreePart own{&record.nodes(),
                      record.cloth() ? record.cloth()->take_impulses(member.substep, moves)
                                     : record.rope()->take_impulses(member.substep, moves),
-                     moves};
+                     moves, record.cloth() && record.cloth()->bounce_stiffness() > 0};
         if (!is_free) continue;
         if (is_joined[m] != 0)
             joined.push_back(std::move(own));

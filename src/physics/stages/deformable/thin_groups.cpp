@@ -8,6 +8,7 @@
 #include "foundation/task_pool.h"
 #include "foundation/zone.h"
 #include "physics/definitions/world_settings.h"
+#include "physics/deformable/contact/free_motion.h"
 #include "physics/stages/access.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
@@ -80,12 +81,61 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
+// The highest circular frequency with which an inflated sheet, or a body on it, bounces faster than `min_speed`, rad/s.
+// A sheet that touches something bounces with what its last acceleration comes to in the bounce's time; where it is
+// pressed slowly between others it does not. What turns comes down on its next nodes with the turn's frequency.
+double bounce_frequency(const ThinGroup& group, std::span<const ThinDeformable> thin, const ThinDeformable& one,
+                        std::span<const TouchedBody> bodies, double phase, double min_speed) {
+    const ClothSheet& sheet = *one.record->cloth();
+    const Nodes& nodes = sheet.nodes();
+    const deformable::WholeMotion whole = deformable::motion_of_whole(nodes);
+    double frequency = 0;
+    const auto bounces = [&](double mass, double speed) {
+        if (speed > min_speed) frequency = std::max(frequency, std::sqrt(sheet.bounce_stiffness() / mass));
+    };
+    const auto meets = [&](std::uint32_t number, Vec3 normal) {
+        const TouchedBody& body = bodies[number];
+        const double speed = std::fabs(dot(whole.velocity - body.path_velocity, normal));
+        frequency = std::max(frequency, length(whole.spin));
+        if (sheet.is_flying()) bounces(whole.mass, speed);
+        if (body.inverse_mass > 0) bounces(1 / body.inverse_mass, speed);
+    };
+    for (const NodeContact& contact : one.contacts) meets(contact.body, contact.normal);
+    for (const SheetContact& contact : one.sheet_contacts) meets(contact.plane.body, contact.plane.normal);
+    for (const std::uint32_t other : group.members)
+        bounces(whole.mass, length(whole.velocity - deformable::motion_of_whole(thin[other].record->nodes()).velocity));
+    Vec3 change;  // half of the momentum of the last part, kg m/s
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        change += nodes.mass[i] * (nodes.velocity[i] - nodes.mean_velocity[i]);
+    if (!sheet.is_flying()) bounces(whole.mass, 2 * length(change) / (whole.mass * phase));
+    return frequency;
+}
+
+// The longest part of a substep of h seconds, in the shortest: backward Euler would swallow the bounce of an inflated
+// sheet. What bounces with less than the speed that gravity gives in the substep lies still, or rolls.
+int largest_part(const DeformableAccess& world, const ThinGroup& group, std::span<const ThinDeformable> thin, double h,
+                 std::span<const TouchedBody> bodies) {
+    const DeformableSettings& settings = world.settings.solver.deformable;
+    const double phase = settings.cloth.max_bounce_phase;
+    double frequency = 0;
+    for (const std::uint32_t i : group.members) {
+        const DeformableRecord& record = *thin[i].record;
+        if (record.cloth() == nullptr || record.cloth()->bounce_stiffness() == 0) continue;
+        const double gravity = std::max(pull_on(world, record), settings.thin_contact.min_gravity);
+        frequency = std::max(frequency, bounce_frequency(group, thin, thin[i], bodies, phase, gravity * h));
+    }
+    int size = settings.cloth.max_parts;
+    while (size > 1 && frequency * h * size / settings.cloth.max_parts > phase) size /= 2;
+    return size;
+}
+
 // In parts where things meet fast or are stretched far: half as long until they can be solved, then longer again.
 void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
                       double time, std::vector<TouchedBody>& bodies) {
     // Counted in the shortest: summed up in seconds, their rounding would be left over as one more part.
     const int count = world.settings.solver.deformable.cloth.max_parts;
-    int done = 0, size = count;
+    const int largest = largest_part(world, group, thin, h, bodies);
+    int done = 0, size = largest;
     while (done < count) {
         const double part = h * size / count;
         const std::vector<TouchedBody> before = bodies;
@@ -97,7 +147,7 @@ void advance_in_parts(const DeformableAccess& world, const ThinGroup& group, std
         }
         if (ThinGroupPart(world, group, thin, part, time + h * done / count).advance(bodies, size == 1)) {
             done += size;
-            size = std::min(2 * size, count - done);
+            size = std::min({2 * size, largest, count - done});
         } else {
             bodies = before;
             size /= 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/solid/enclosed_gas.h"
+#include "physics/deformable/gas/enclosed_gas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double air_pressure = 101'325;  // Pa, of the standard atmosphere (ISO
 
 EnclosedGas::EnclosedGas(double pressure, std::span<const std::array<std::uint32_t, 3>> surface,
                          std::span<const Vec3> rest)
-    : absolute_(pressure + air_pressure) {
+    : pressure_(pressure), absolute_(pressure + air_pressure) {
     measure(surface, rest);
     rest_volume_ = volume_;
 }
