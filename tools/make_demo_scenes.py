@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
 ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an awning
-under a tap. The others there were built by hand.
+under a tap, beach balls. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -296,9 +296,29 @@ def awning() -> dict:
     return scene("Awning", "A tap pours water on a cloth. It gathers where the cloth sags, and drips through into the tub until the cloth is dry.", [0.55, 1.75, 1.75], [0, 0.55, 0], entities, actions=actions)
 
 
+def beach_balls() -> dict:
+    """An exercise ball and a tube, on which boxes fall, and beach balls. PVC of 10 to 30 MPa and 0.2 to 1.2 mm; 15 to 45 mbar, as makers say and mouths blow."""
+    def film(thickness: float, stiffness: float, pressure: float, nodes: int, damping: float = 0.001) -> dict:
+        return {"kind": "cloth", "thickness": thickness, "area_density": round(1300 * thickness, 3), "stretch_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness, "bend_stiffness": 1e-5, "bend_friction": 0,
+                "damping_rayleigh": damping, "friction_static": 0.6, "friction_dynamic": 0.5, "cloth_nodes": nodes, "internal_pressure": pressure}
+
+    entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62])]
+    entities.append(sphere("Exercise ball", 0.32, [-0.5, 0.33, 0], [0.3, 0.45, 0.72], category="exercise ball", attributes=film(0.0011, 12000, 4500, 300, 0.003)))
+    big = len(entities)
+    entities.append({"name": "Tube", "shape": {"type": "capsule", "radius": 0.15, "half_height": 0.45}, "pose": {"position": [0.5, 0.16, 0.1], "rotation": turn([1, 0, 0], 90)}, "color": [0.85, 0.6, 0.2],
+                     "category": "air mattress", "attributes": film(0.00035, 10000, 2500, 250, 0.003)})
+    for number, (x, y, mass) in enumerate(((-0.5, 1.2, 6), (0.5, 0.9, 4))):
+        entities.append(box(f"Box {number + 1}", [0.1, 0.08, 0.1], [x, y, 0.02], hue(number / 3), turn([0, 1, 0], 20 * number), attributes={"mass": mass, "restitution": 0}))
+    entities += [sphere("Beach ball", 0.17, [x, y, z], color, category="beach ball", attributes=film(0.0002, 6000, 1500, 150))
+                 for x, y, z, color in ((0.05, 1.2, 0.5, [0.9, 0.35, 0.25]), (0.1, 1.6, -0.5, [0.95, 0.8, 0.3]))]
+    actions = [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": big}, "effect": {"type": "set_attribute", "name": "internal_pressure", "value": pressure}, "once": False}
+               for name, pressure in (("Pump", 9000), ("Let out", 100))]
+    return scene("Beach balls", "Balls and a tube of closed cloth with gas inside (Internal pressure). Boxes fall on them. Buttons pump the big ball up and let its air out.", [1.5, 1.3, 1.9], [0, 0.35, 0], entities, actions=actions)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

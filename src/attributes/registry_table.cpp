@@ -242,8 +242,9 @@ void add_soft_and_cloth(Rows& rows) {
                 0, 100);
     soft.number({"yield_stress", "V", "Yield stress", "Stress (von Mises) from which it stays deformed."}, "Pa",
                 infinity, 0, infinity);
-    soft.number({"internal_pressure", "V", "Internal pressure",
-                 "Of gas inside, above that of the air around; its form is the one that it has under this pressure."},
+    soft.number({"internal_pressure", "VC", "Internal pressure",
+                 "Of gas inside, above that of the air around; its form is the one that it has under this pressure. "
+                 "Cloth with gas is a closed sheet: a beach ball, an air bed."},
                 "Pa", 0, 0, 1e8);
     soft.whole({"soft_resolution", "V", "Resolution",
                 "Elements across its thinnest extent: more are more exact and cost more. 0: as many as bending and "

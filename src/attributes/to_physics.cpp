@@ -183,6 +183,19 @@ double area_of(const SheetMesh& sheet) {
     return area;
 }
 
+// Fills a closed sheet, whose form is the one that it has under this pressure: its threads are stretched there by the
+// tension Y (s - 1)/s = p r/2 of a ball of its volume V and area A, r = 3 V/A.
+void inflate(physics::DeformableDefinition& deformable, double pressure) {
+    constexpr double max_stretch = 2;
+    auto& cloth = std::get<physics::Cloth>(deformable.matter);
+    const double volume = physics::enclosed_volume(deformable.nodes, cloth.triangles);
+    if (!(volume > 0)) return;
+    const double radius = 3 * volume / area_of({deformable.nodes, cloth.triangles});
+    const double tension = pressure * radius / 2 / cloth.stretch_stiffness;
+    cloth.prestretch = tension < 1 - 1 / max_stretch ? 1 / (1 - tension) : max_stretch;
+    cloth.internal_pressure = pressure;
+}
+
 }  // namespace
 
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
@@ -280,7 +293,9 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     cloth.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
     cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
+    const double pressure = is_closed(cloth) ? number_or_standard(attributes, "internal_pressure") : 0;
     deformable.matter = std::move(cloth);
+    if (pressure > 0) inflate(deformable, pressure);
     return deformable;
 }
 

@@ -57,7 +57,8 @@ struct SheetMesh {
 };
 
 /// Cloth of these triangles, without pose. Its area density makes its mass that of the attributes; a thickness above
-/// the length of an edge is reduced to that length. The error says where the mass needs a density that no cloth has.
+/// the length of an edge is reduced to that length. The form of a closed sheet is the one that it has under its
+/// internal pressure, exactly so for balls. The error says where the mass needs a density that no cloth has.
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy = nullptr);
 

@@ -228,6 +228,17 @@ def sheet_metal(run: Run):
     yield from within("lowest point of the soft steel", lowest["Soft steel"], 0.2, 0.55)
 
 
+def beach_balls(run: Run):
+    # Blown up they keep their form; a balloon that a box lies on is pressed flat where it touches only.
+    for name, size in (("Exercise ball", 0.64), ("Beach ball", 0.34)):
+        for index in run.called(name):
+            for axis in range(3):
+                places = [p[axis] for p in run.points(index)]
+                yield from within(f"size of {name} along axis {axis}", max(places) - min(places), 0.97 * size, 1.03 * size)
+    for index in run.called("Box"):
+        yield from within("height of a box", run.last[index]["position"][1], 0.07, 0.8)
+
+
 def wrecking_ball(run: Run):
     links = [run.last[index]["position"] for index in run.called("Link")]
     for a, b in zip(links, links[1:]):
@@ -241,6 +252,7 @@ SCENES = {
     "awning": (20, False, awning),
     "basin": (30, False, basin),
     "bathtub": (3, False, bathtub),
+    "beach_balls": (8, False, beach_balls),
     "breaking_plates": (4, False, breaking_plates),
     "card_house": (8, True, card_house),
     "curtain_in_the_wind": (3, False, curtain),

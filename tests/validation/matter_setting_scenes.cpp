@@ -56,6 +56,8 @@ GoldenScene loaded_sheets() {
     add_box(world, {0.1, 0.1, 0.1}, {.position = {2, 0.105, 0}, .mass = {.mass = 20}});
     add_box(world, {0.2, 0.1, 0.2}, {.kind = still, .position = {4, 0.1, 0}});
     add(world, cloth_rectangle(0.5, 0.5, 0.08, linen), {4, 0.203, 0});
+    Cloth foil{.area_density = 0.3, .stretch_stiffness = 5000, .shear_stiffness = 2000, .internal_pressure = 3000};
+    add(world, cloth_ball(0.1, 0.05, foil), {6, 0.3, 0});
     add(world, rope_between({3.6, 0.23, 0.05}, {4.4, 0.24, -0.05}, 0.06, cord), {}, {0, -1, 0});
     return scene;
 }

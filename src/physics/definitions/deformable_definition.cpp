@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/topology.h"
 #include "physics/definitions/field_check.h"
 
 namespace embody::physics {
@@ -137,6 +138,19 @@ Result<void> check_matter(const DeformableDefinition& definition, const SoftSoli
                        check_number("internal_pressure", solid.internal_pressure, 0, 1e8, "Pa"));
 }
 
+Result<void> check_gas(const DeformableDefinition& definition, const Cloth& cloth) {
+    const char* field = "internal_pressure";
+    if (auto result = check_number(field, cloth.internal_pressure, 0, 1e8, "Pa"); !result) return result;
+    if (cloth.internal_pressure == 0) return {};
+    if (!is_closed(cloth))
+        return Error{field, "is that of a sheet with holes, through which gas escapes",
+                     "close the sheet: each edge between two triangles that are turned the same way; or set it to 0"};
+    if (!(enclosed_volume(definition.nodes, cloth.triangles) > 0))
+        return Error{field, "is that of a sheet that encloses nothing, or is turned inside out",
+                     "turn its triangles: their corners run counterclockwise seen from outside"};
+    return {};
+}
+
 Result<void> check_matter(const DeformableDefinition& definition, const Cloth& cloth) {
     if (auto result = check_elements(definition, "triangles", cloth.triangles); !result) return result;
     return first_error(check_number("area_density", cloth.area_density, 1e-4, 1000, "kg/m2"),
@@ -147,7 +161,8 @@ Result<void> check_matter(const DeformableDefinition& definition, const Cloth& c
                        check_number("rayleigh_damping", cloth.rayleigh_damping, 0, 100, "s"),
                        check_number("drag_coefficient", cloth.drag_coefficient, 0, 10),
                        check_number("bend_friction", cloth.bend_friction, 0, 1e6, "1/m"),
-                       check_limit("bend_yield", cloth.bend_yield));
+                       check_limit("bend_yield", cloth.bend_yield), check_number("prestretch", cloth.prestretch, 1, 2),
+                       check_gas(definition, cloth));
 }
 
 Result<void> check_matter(const DeformableDefinition& definition, const Rope& rope) {
@@ -166,6 +181,17 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
 }
 
 }  // namespace
+
+bool is_closed(const Cloth& cloth) { return geometry::find_topology({{}, cloth.triangles}).is_closed(); }
+
+double enclosed_volume(std::span<const Vec3> nodes, std::span<const std::array<std::uint32_t, 3>> triangles) {
+    if (triangles.empty()) return 0;
+    const Vec3 origin = nodes[triangles.front()[0]];
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles)
+        sum += dot(nodes[a] - origin, cross(nodes[b] - origin, nodes[c] - origin)) / 6;
+    return sum;
+}
 
 Result<void> validate(const DeformableDefinition& definition) {
     if (auto result = check_nodes(definition); !result) return result;

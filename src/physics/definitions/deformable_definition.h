@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -40,6 +41,10 @@ struct Cloth {
     double bend_friction = 0;  ///< the most that friction between the threads resists bending with, as the curvature
                                ///< that the bend stiffness resists with as much, 1/m, 0 … 1e6
     double bend_yield = std::numeric_limits<double>::infinity();  ///< curvature beyond which a fold stays, 1/m, > 0
+    double internal_pressure = 0;  ///< of gas in a closed sheet, above that of the air around, while the nodes have
+                                   ///< their form, Pa, 0 … 1e8; 0: no gas
+    double prestretch = 1;  ///< length of its threads in the form of the nodes over that without tension, 1 … 2: of
+                            ///< what is modelled blown up
 };
 
 /// A line of nodes, each joined to the next: rope, cable, thread. Straight at rest.
@@ -85,6 +90,15 @@ struct RopeTwist {
     double moment = 0;               ///< N m: acts on the second clamp as -moment and on the first as moment
 };
 
+/// Pressure of the air around things with gas inside, Pa. Source: standard atmosphere, ISO 2533:1975
+inline constexpr double air_pressure = 101'325;
+
+/// Gas in a closed sheet.
+struct GasInside {
+    double volume = 0;    ///< m³
+    double pressure = 0;  ///< above that of the air around, Pa
+};
+
 /// A deformable body: nodes, and elastic matter between them. Lengths in m, in the deformable's own frame.
 struct DeformableDefinition {
     std::vector<Vec3> nodes;  ///< at rest
@@ -116,6 +130,12 @@ struct LastingDeformation {
     /// each as xx, yy and √2 xy in the triangle's plane with x along the warp. Empty: none.
     std::vector<std::array<double, 6>> bend;
 };
+
+/// Whether each edge is between two triangles that run along it in opposite directions: the sheet can hold gas.
+bool is_closed(const Cloth& cloth);
+
+/// What closed triangles enclose, m³: negative where their corners run clockwise seen from outside.
+double enclosed_volume(std::span<const Vec3> nodes, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// Whether every number is finite and in range, every index points to a node, every node belongs to an element and
 /// every element has its volume, area or length; the error's `where` is the field. Bodies are checked by the world.

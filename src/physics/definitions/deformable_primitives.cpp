@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace embody::physics {
 
@@ -83,6 +85,48 @@ DeformableDefinition cloth_disc(double radius, double edge, Cloth cloth) {
                 const std::uint32_t b = outer + sector * r + k, c = outer + (sector * r + k + 1) % outer_count;
                 cloth.triangles.push_back({a, c, b});
                 if (k + 1 < r) cloth.triangles.push_back({a, inner + (sector * (r - 1) + k + 1) % inner_count, c});
+            }
+        }
+    }
+    sheet.matter = std::move(cloth);
+    return sheet;
+}
+
+DeformableDefinition cloth_ball(double radius, double edge, Cloth cloth) {
+    const double golden = (1 + std::sqrt(5.0)) / 2;
+    std::vector<Vec3> corners;
+    for (const double a : {-1.0, 1.0}) {
+        for (const double b : {-golden, golden}) {
+            corners.insert(corners.end(), {{0, a, b}, {a, b, 0}, {b, 0, a}});
+        }
+    }
+    const int parts = std::max(1, static_cast<int>(std::lround(radius * 2 / length(corners[0]) / edge)));
+    DeformableDefinition sheet;
+    std::map<std::array<std::int64_t, 3>, std::uint32_t> known;  // nodes by place: faces share those of their edges
+    const auto node_at = [&](Vec3 place) {
+        constexpr double grid = 1e6;  // by half an edge of the icosahedron: rounding is finer, nodes are further apart
+        const auto [node, is_new] = known.try_emplace(
+            {std::llround(grid * place.x), std::llround(grid * place.y), std::llround(grid * place.z)},
+            static_cast<std::uint32_t>(sheet.nodes.size()));
+        if (is_new) sheet.nodes.push_back(radius * normalized(place));
+        return node->second;
+    };
+    const auto are_neighbours = [&](Vec3 a, Vec3 b) { return std::fabs(length(a - b) - 2) < 0.1; };
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (std::size_t j = i + 1; j < corners.size(); ++j) {
+            for (std::size_t k = j + 1; k < corners.size(); ++k) {
+                const Vec3 a = corners[i];
+                Vec3 b = corners[j], c = corners[k];
+                if (!are_neighbours(a, b) || !are_neighbours(b, c) || !are_neighbours(c, a)) continue;
+                if (dot(a, cross(b, c)) < 0) std::swap(b, c);
+                const auto at = [&](int u, int v) { return node_at(a + (u * (b - a) + v * (c - a)) / parts); };
+                for (int u = 0; u < parts; ++u) {
+                    for (int v = 0; u + v < parts; ++v) {
+                        cloth.triangles.push_back({at(u, v), at(u + 1, v), at(u, v + 1)});
+                        if (u + v + 1 < parts)
+                            cloth.triangles.push_back({at(u + 1, v), at(u + 1, v + 1), at(u, v + 1)});
+                    }
+                }
             }
         }
     }

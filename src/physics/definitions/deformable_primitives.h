@@ -17,6 +17,9 @@ DeformableDefinition cloth_rectangle(double size_x, double size_z, double edge, 
 /// Rings of nearly equilateral triangles about a node in the middle (node 0).
 DeformableDefinition cloth_disc(double radius, double edge, Cloth cloth = {});
 
+/// A closed ball: the faces of an icosahedron, each split into equal triangles, on the sphere. It can hold gas.
+DeformableDefinition cloth_ball(double radius, double edge, Cloth cloth = {});
+
 /// A straight rope from `from` (node 0) to `to` (the last) in segments of equal length, `segment` or shorter.
 DeformableDefinition rope_between(Vec3 from, Vec3 to, double segment, Rope rope = {});
 

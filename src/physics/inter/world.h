@@ -143,6 +143,8 @@ public:
     /// Twist of each span between two of a rope's clamps, in the last step. Empty where there are none, and for other
     /// deformables. Valid until the next step or change.
     [[nodiscard]] std::span<const RopeTwist> rope_twists(DeformableHandle rope) const;
+    /// Gas in a closed sheet now; std::nullopt without (Cloth::internal_pressure).
+    [[nodiscard]] std::optional<GasInside> gas_inside(DeformableHandle sheet) const;
     /// Indices of broken segments, ascending.
     [[nodiscard]] std::vector<std::uint32_t> broken_segments(DeformableHandle rope) const;
 

@@ -306,6 +306,13 @@ std::span<const RopeTwist> World::rope_twists(DeformableHandle rope) const {
     return record != nullptr && record->rope() ? record->rope()->twists() : std::span<const RopeTwist>();
 }
 
+std::optional<GasInside> World::gas_inside(DeformableHandle sheet) const {
+    const DeformableRecord* record = state_->deformables.records.find(sheet);
+    if (record == nullptr || !record->cloth() || !record->cloth()->gas().is_active()) return std::nullopt;
+    const double volume = record->cloth()->gas().volume(record->nodes().position);
+    return GasInside{volume, record->cloth()->gas().pressure(volume)};
+}
+
 std::vector<std::uint32_t> World::broken_segments(DeformableHandle rope) const {
     std::vector<std::uint32_t> broken;
     for (std::uint32_t s = 0; s < rope_tensions(rope).size(); ++s) {

@@ -22,7 +22,7 @@ public:
 
     /// The tetrahedra of an entity of kind soft.
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity, const attributes::AttributeSet& attributes);
-    /// The sheet of an entity of kind cloth, the line of one of kind rope.
+    /// The sheet of an entity of kind cloth, with gas inside all of its surface; the line of one of kind rope.
     Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Forgets the meshes of a model.
     void forget(const std::string& key) {
@@ -32,6 +32,8 @@ public:
 
 private:
     Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity, int resolution);
+    Result<catalog::SoftMesh> make_soft_mesh_about(const Entity& entity, int count);
+    Result<ThinForm> make_closed_form(const Entity& entity, int count);
     Result<ThinForm> make_thin_form(const Entity& entity, bool is_cloth, int count);
 
     KnownModels& models_;

@@ -25,11 +25,22 @@ GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& att
     return key;
 }
 
+bool asks_for_gas(const attributes::AttributeSet& attributes) {
+    return matter_of(attributes) == Matter::sheet && attributes.number("internal_pressure", 0) > 0;
+}
+
 // Equal keys mean equal nodes of a deformable.
 GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments", "soft_resolution"});
     key.numbers.push_back(entity.scale);
+    // A sheet that holds gas is closed.
+    if (asks_for_gas(attributes)) key.words.emplace_back("gas");
     return key;
+}
+
+bool is_closed_sheet(const ThinForm& form) {
+    const auto* sheet = std::get_if<attributes::SheetMesh>(&form);
+    return sheet != nullptr && is_closed(physics::Cloth{.triangles = sheet->triangles});
 }
 
 EntityForm particles_form(const Entity& entity, GeometryKey key, double budget, bool is_liquid) {
@@ -83,6 +94,8 @@ EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeS
             if (!thin.ok()) return {false, {}, rigid_because + thin.error().why, {}};
             EntityForm form{true, deformable_key(entity, attributes), {}, {}};
             form.kept_fit = fit_of_mesh(form.points_key, entity.geometry, *thin.value());
+            if (asks_for_gas(attributes) && !is_closed_sheet(*thin.value()))
+                form.note = "holds no gas, because it encloses no room or parts of it meet in edges only";
             return form;
         }
     }

@@ -75,6 +75,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
                                        {"shear_stiffness", &Cloth::shear_stiffness, 1e-3, 1e9},
                                        {"bend_stiffness", &Cloth::bend_stiffness, 1e-9, 1e6},
                                        {"bend_friction", &Cloth::bend_friction, 0, 1e6},
+                                       {"prestretch", &Cloth::prestretch, 1, 2},
                                        {"rayleigh_damping", &Cloth::rayleigh_damping, 0, 100},
                                        {"drag_coefficient", &Cloth::drag_coefficient, 0, 10}});
     check_ranges<Rope>(good_rope(), {{"diameter", &Rope::diameter, 1e-4, 1},

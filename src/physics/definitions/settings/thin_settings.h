@@ -38,6 +38,10 @@ struct ClothSettings {
     /// Stiffness with which friction in bending begins, over the bend stiffness. Source: curves of fabrics on
     /// Kawabata's tester come to their friction within a fraction of 1/cm. Test: Settings.AreNoticed.
     double friction_stiffness = 4;
+    /// Energy that a substep takes from a sheet with gas inside by the change of the whole's velocity, over that of its
+    /// motion, above which the substep is taken in parts. Source: backward Euler takes ½ m Δv². Test:
+    /// SheetGas.DroppedBallsBounceAndGainNothing.
+    double bounce_tolerance = 0.02;
 };
 
 template <>
@@ -53,6 +57,7 @@ inline constexpr auto settings_of<ClothSettings> = std::tuple{
     Setting{"same_layer_reach", &ClothSettings::same_layer_reach, 2, 1e3},
     Setting{"compliance_on_body", &ClothSettings::compliance_on_body, 1e-6, 1},
     Setting{"friction_stiffness", &ClothSettings::friction_stiffness, 1e-3, 1e3},
+    Setting{"bounce_tolerance", &ClothSettings::bounce_tolerance, 0, 1e9},
 };
 static_assert(setting_count<ClothSettings> == member_count<ClothSettings>(), "a setting is in no list");
 

@@ -59,6 +59,18 @@ double mean_width(const std::vector<ClothTriangle>& triangles, const BendElement
 
 }  // namespace
 
+// Without tension its triangles are smaller: gradients along the threads by the stretch, areas that it acts on by its
+// square.
+void ClothSheet::prestretch() {
+    const double stretch = cloth_.prestretch;
+    for (ClothTriangle& triangle : triangles_) {
+        for (double& gradient : triangle.warp) gradient *= stretch;
+        for (double& gradient : triangle.weft) gradient *= stretch;
+    }
+    cloth_.stretch_stiffness /= stretch * stretch;
+    cloth_.shear_stiffness /= stretch * stretch;
+}
+
 ClothSheet::ClothSheet(const DeformableDefinition& definition)
     : ClothSheet(definition, make_bend_elements(definition.nodes, std::get<Cloth>(definition.matter))) {}
 
@@ -66,12 +78,14 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition, const BendElement
     : cloth_(std::get<Cloth>(definition.matter)),
       triangles_(make_cloth_triangles(definition.nodes, cloth_)),
       bending_(make_bending_rows(bend, definition.nodes.size())),
-      bend_memory_(bend, definition.nodes.size(), cloth_.bend_friction, cloth_.bend_yield) {
+      bend_memory_(bend, definition.nodes.size(), cloth_.bend_friction, cloth_.bend_yield),
+      gas_(definition) {
     const std::size_t count = definition.nodes.size();
     nodes_.mass.assign(count, 0);
     for (const ClothTriangle& triangle : triangles_) {
         for (const std::uint32_t node : triangle.node) nodes_.mass[node] += cloth_.area_density * triangle.area / 3;
     }
+    prestretch();
     Vec3 center;
     double mass = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -189,12 +203,26 @@ ClothSheet::Images ClothSheet::stress_change(const Strain& strain, const Images&
                 strain.across_fg * change.f + strain.across_gg * change.g};
 }
 
+// Takes the damping of the motion as one piece out: the equations are linear, so a turn stretches in them.
+void ClothSheet::undamp(const ClothTriangle& triangle, double damping, Strain& strain) const {
+    Images turned;
+    for (std::size_t k = 0; k < 3; ++k) {
+        turned.f += triangle.warp[k] * turned_[triangle.node[k]];
+        turned.g += triangle.weft[k] * turned_[triangle.node[k]];
+    }
+    const double stretch = damping * cloth_.stretch_stiffness;
+    const double shear = damping * cloth_.shear_stiffness * (dot(strain.g, turned.f) + dot(strain.f, turned.g));
+    strain.f_stress -= stretch * dot(strain.f_displacement, turned.f) * strain.f_displacement + shear * strain.g;
+    strain.g_stress -= stretch * dot(strain.g_displacement, turned.g) * strain.g_displacement + shear * strain.f;
+}
+
 void ClothSheet::find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
     constexpr double min_stretch = 1e-9;  // length over that at rest: keeps its inverse finite
     strains_.resize(triangles_.size());
     air_.resize(triangles_.size());
     winds_.resize(triangles_.size());
     const auto work = [&](int, IndexRange range) {
+        const double damping = cloth_.rayleigh_damping / substep.h;
         for (std::size_t t = range.first; t < range.last; ++t) {
             const ClothTriangle& triangle = triangles_[t];
             Strain& strain = strains_[t];
@@ -216,6 +244,7 @@ void ClothSheet::find_strains(const Substep& substep, std::span<const Vec3> move
                          change = stress_change(strain, {start.f - images.f, start.g - images.g});
             strain.f_stress = stress.f + change.f;
             strain.g_stress = stress.g + change.g;
+            if (!turned_.empty()) undamp(triangle, damping, strain);
 
             // Drag by the air that blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
             Vec3 velocity;
@@ -293,6 +322,7 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
             matrix_.set_far(i, far_element_[k], static_cast<float>(bent * bending_.value[k]));
     }
     if (bend_memory_.is_active()) load += cloth_.bend_stiffness * bend_memory_.force_on(i);
+    if (gas_.is_active()) load += gas_.force_on(i);
     for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
         const Corner& corner = corners_[c];
         const ClothTriangle& triangle = triangles_[corner.triangle];
@@ -308,10 +338,12 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
             const double across =
                 area * (strain.across_ff * b * b2 + strain.across_gg * d * d2 + strain.across_fg * (b * d2 + d * b2));
             block += across * Mat3::identity();
-            if (other == corner.corner)
+            if (other == corner.corner) {
                 own += block;
-            else
-                near[corner.element[other]] += to_block(block);
+                continue;
+            }
+            if (gas_.is_active()) block += gas_.block(triangle.node, corner.corner, other == (corner.corner + 1) % 3);
+            near[corner.element[other]] += to_block(block);
         }
         const Vec3 air = air_[corner.triangle];
         own += (1 / h) * symmetric_outer(air);
@@ -370,6 +402,7 @@ std::vector<ThinCandidate> ClothSheet::near_layers(const Substep& substep, TaskP
 void ClothSheet::linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers) {
     find_strains(substep, moves, workers);
     foresee_bending(substep, moves, workers);
+    if (gas_.is_active()) gas_.linearize(nodes_.position, moves);
     fill_rows(substep, workers);
 }
 
@@ -386,14 +419,30 @@ double ClothSheet::unforeseen_energy(std::span<const Vec3> moves, TaskPool& work
             unforeseen_[t] = triangles_[t].area * std::max(0.0, energy_of(to) - foreseen);
         }
     });
-    return std::accumulate(unforeseen_.begin(), unforeseen_.end(), 0.0);
+    const double of_gas = gas_.is_active() ? gas_.unforeseen_energy(nodes_.position, moves) : 0;
+    return std::accumulate(unforeseen_.begin(), unforeseen_.end(), of_gas);
+}
+
+// By the present motion of the whole as one piece, m. Where gas pulls a sheet taut its tension is large beside its
+// inertia. What the matrix leaves out of the stress of pressed triangles would then hold the sheet against turning.
+std::vector<Vec3> ClothSheet::whole_moves(double h) const {
+    const WholeMotion motion = motion_of_whole(nodes_);
+    const double angle = h * length(motion.spin);
+    const Quat turn = from_axis_angle(normalized(motion.spin, {0, 1, 0}), std::isfinite(angle) ? angle : 0);
+    std::vector<Vec3> moves;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 arm = nodes_.position[i] - motion.center;
+        moves.push_back(fixed_[i] != 0 ? Vec3{} : h * motion.velocity + rotate(turn, arm) - arm);
+    }
+    return moves;
 }
 
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
                        std::span<const TouchedBody> bodies, TaskPool& workers) {
     springs_.tolerance = substep.settings.thin_contact.change_tolerance;
-    linearize(substep, {}, workers);
+    if (gas_.is_active()) turned_ = whole_moves(substep.h);
+    linearize(substep, turned_, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
@@ -442,6 +491,7 @@ double ClothSheet::elastic_energy() const {
     }
     if (bend_memory_.is_active())
         energy += cloth_.bend_stiffness * bend_memory_.energy(nodes_.position, normals(), friction_stiffness_);
+    if (gas_.is_active()) energy += gas_.energy(gas_.volume(nodes_.position));
     return energy;
 }
 

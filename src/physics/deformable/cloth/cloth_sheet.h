@@ -9,6 +9,7 @@
 #include "physics/deformable/cloth/cloth_layers.h"
 #include "physics/deformable/cloth/cloth_mesh.h"
 #include "physics/deformable/cloth/cloth_solver.h"
+#include "physics/deformable/cloth/sheet_gas.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
@@ -30,10 +31,12 @@ public:
                TaskPool& workers);
     /// Finds system() about these moves (m), as in Newton's method. None: the place at the part's start.
     void linearize(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
-    /// What stretch and shear take more for these moves than system() says, J: none of what they take less.
+    /// What stretch, shear and gas take more for these moves than system() says, J: none of what they take less.
     [[nodiscard]] double unforeseen_energy(std::span<const Vec3> moves, TaskPool& workers);
     /// The sheet's equations for the solve, those of the last linearize(), valid until the next begin().
-    [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
+    [[nodiscard]] SheetSystem system() {
+        return {&matrix_, rhs_, small_load_, fixed_, gas_.gradient(), gas_.compression()};
+    }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] ClothLayers& layers() { return *layers_; }
     [[nodiscard]] const ClothLayers& layers() const { return *layers_; }
@@ -67,7 +70,9 @@ public:
     /// Takes contacts over from another sheet of as many nodes, and what bending has left where its triangles are as
     /// many, too.
     void go_on_from(const ClothSheet& other);
-    /// Present energy of stretch, shear and bending, and of its friction, J.
+    /// Gas inside.
+    [[nodiscard]] const SheetGas& gas() const { return gas_; }
+    /// Present energy of stretch, shear and bending, of its friction, and of gas, J.
     [[nodiscard]] double elastic_energy() const;
     [[nodiscard]] BendMemory& bend_memory() { return bend_memory_; }
     [[nodiscard]] const BendMemory& bend_memory() const { return bend_memory_; }
@@ -106,6 +111,9 @@ private:
     [[nodiscard]] double travel_with(std::size_t triangle, double added) const;
     [[nodiscard]] double young_drag(std::size_t triangle, double added) const;
     void foresee_bending(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
+    void prestretch();
+    [[nodiscard]] std::vector<Vec3> whole_moves(double h) const;
+    void undamp(const ClothTriangle& triangle, double damping, Strain& strain) const;
     void find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
@@ -117,6 +125,7 @@ private:
     std::vector<ClothTriangle> triangles_;
     ScalarRows bending_;  // times bend stiffness, N/m
     BendMemory bend_memory_;
+    SheetGas gas_;
     ClothMatrix matrix_;
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
@@ -131,6 +140,7 @@ private:
     // Of the substep.
     std::vector<Strain> strains_;
     std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
+    std::vector<Vec3> turned_;  // of a sheet with gas: moves of its motion as one piece
     std::vector<double> node_stiffness_, unforeseen_;
     double friction_stiffness_ = ClothSettings{}.friction_stiffness;
     std::vector<Vec3> foreseen_;  // moves about which bend_memory_ was asked

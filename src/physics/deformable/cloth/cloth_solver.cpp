@@ -48,7 +48,9 @@ double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
                                .quads = reinterpret_cast<float*>(quads.data())};
     double unused[slice_rows] = {};
     widest_kernels<ClothRowKernels>().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
-    double sum = 0;
+    double sum = 0, pull = 0;
+    for (std::size_t i = 0; i < sheet.gradient.size(); ++i) pull += dot(sheet.gradient[i], moves[i]);
+    sum += sheet.stiffness / 2 * pull * pull;
     for (std::size_t i = 0; i < moves.size(); ++i) {
         if (sheet.fixed[i] == 0) sum += dot(0.5 * to_vec3(force.at(i)) - sheet.rhs[i], moves[i]);
     }
@@ -85,7 +87,41 @@ void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t
         q_.add(place_[link.row], added);
         sum += product(added, p_.at(place_[link.row]));
     }
+    if (!sheets[run.sheet].gradient.empty()) sum += add_pull(sheets[run.sheet], chunk);
     curvatures_[chunk] = sum;
+}
+
+// Of the chunk's rows, whose p is known.
+void ClothSolver::find_pull(std::size_t chunk) {
+    const Chunk& run = chunks_[chunk];
+    std::array<double, slice_rows> sums{};
+    for (std::size_t slice = run.first; slice < run.last; ++slice) {
+        const std::size_t at = sheet_slice_[run.sheet] + slice;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float *g = gradients_.slice(at) + axis * gradients_.stride(), *p = p_.slice(at) + axis * p_.stride();
+            for (std::size_t lane = 0; lane < slice_rows; ++lane)
+                sums[lane] += static_cast<double>(g[lane]) * static_cast<double>(p[lane]);
+        }
+    }
+    pulls_[chunk] = std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+// q += stiffness gradient (gradient · p) in the chunk, with what all chunks of the sheet pull. Returns its part of p ·
+// q.
+double ClothSolver::add_pull(const SheetSystem& sheet, std::size_t chunk) {
+    const Chunk& run = chunks_[chunk];
+    double pull = 0;
+    for (std::size_t c = 0; c < chunks_.size(); ++c) pull += chunks_[c].sheet == run.sheet ? pulls_[c] : 0;
+    const auto factor = static_cast<float>(sheet.stiffness * pull);
+    for (std::size_t slice = run.first; slice < run.last; ++slice) {
+        const std::size_t at = sheet_slice_[run.sheet] + slice;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float* g = gradients_.slice(at) + axis * gradients_.stride();
+            float* q = q_.slice(at) + axis * q_.stride();
+            for (std::size_t lane = 0; lane < slice_rows; ++lane) q[lane] += factor * g[lane];
+        }
+    }
+    return sheet.stiffness * pull * pulls_[chunk];
 }
 
 Vec3 ClothSolver::p_of(std::uint32_t node) const {
@@ -208,6 +244,7 @@ struct ClothSolver::WorkerSystem {
         for_chunks([&](std::size_t c) {
             const Chunk& chunk = of.chunks_[c];
             of.kernels_->turn(of.vectors_of(chunk.sheet), static_cast<float>(beta), chunk.first, chunk.last);
+            if (!sheets[chunk.sheet].gradient.empty()) of.find_pull(c);
         });
         if (is_first && has_others) of.turn_others(beta);
         barrier.wait();
@@ -301,6 +338,9 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
 // Residual of the guess, with the forces of springs.
 void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                                 std::span<const BodyInertia> bodies, TaskPool& workers) {
+    for (std::size_t c = 0; c < chunks_.size(); ++c) {
+        if (!sheets[chunks_[c].sheet].gradient.empty()) find_pull(c);
+    }
     parallel_for(workers, chunks_.size(), nodes_ >= min_parallel_count, [&](int, IndexRange range) {
         for (std::size_t c = range.first; c < range.last; ++c) multiply_rows(sheets, c);
     });
@@ -357,7 +397,9 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     std::ranges::copy(line_x_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
     for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_x_[b];
     balance_bodies(springs, bodies, moves, body_moves);
-    return result.end == GradientEnd::not_finite ? not_finite : result.iterations;
+    if (result.end == GradientEnd::not_finite) return not_finite;
+    const bool has_gas = std::ranges::any_of(sheets, [](const SheetSystem& sheet) { return !sheet.gradient.empty(); });
+    return has_gas && result.end == GradientEnd::indefinite ? indefinite : result.iterations;
 }
 
 }  // namespace embody::physics::deformable

@@ -23,6 +23,9 @@ struct SheetSystem {
     std::span<const Vec3> rhs;            ///< N
     std::span<const Vec3> small_load;     ///< N
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
+    /// Beside the matrix, as of gas inside: stiffness gradient gradientᵀ. None: no such term.
+    std::span<const Vec3> gradient = {};
+    double stiffness = 0;
 };
 
 /// The function that the equations minimise, for these moves, J, one number a node.
@@ -45,12 +48,15 @@ class ClothSolver {
 public:
     /// Nodes are counted through, sheet after sheet, then line after line: by those numbers springs name them. `moves`:
     /// first guess and answer. It ends when the residual is gradient_tolerance of the small loads in the norm of the
-    /// preconditioner. Returns the number of iterations, or not_finite where numbers became non-finite.
+    /// preconditioner. Returns the number of iterations, or not_finite where numbers became non-finite, or indefinite.
     int solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
               std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
               std::span<BodyMove> body_moves, TaskPool& workers);
 
     static constexpr int not_finite = -1;  ///< in the place of a number of iterations
+    /// The same: the matrix was not positive definite in a direction, so the moves are no answer. Only for sheets with
+    /// terms beside the matrix.
+    static constexpr int indefinite = -2;
     /// Of the world, before a step's first solve().
     void set(const ClothSettings& settings) { settings_ = settings; }
 
@@ -90,6 +96,8 @@ private:
                        std::span<const BodyInertia> bodies, TaskPool& workers);
     [[nodiscard]] ClothVectors vectors_of(std::size_t sheet);
     void multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk);
+    void find_pull(std::size_t chunk);
+    double add_pull(const SheetSystem& sheet, std::size_t chunk);
     template <class Kernel>
     [[nodiscard]] double sum_of_chunk(std::size_t chunk, Kernel kernel);
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
@@ -128,6 +136,8 @@ private:
     std::vector<std::uint32_t> coupled_;  // springs that are neither in the preconditioner's blocks nor in links
     std::vector<Link> links_;             // by row
     const ClothRowKernels* kernels_ = &widest_kernels<ClothRowKernels>();
+    SliceVectors gradients_;                      // of sheets' terms beside the matrix; none: without slices
+    std::vector<double> pulls_;                   // gradient · p by chunk
     std::vector<double> curvatures_, residuals_;  // p · q and z · r by chunk; the last one has all the rest
     std::size_t nodes_ = 0;                       // of sheets
 };

@@ -48,6 +48,16 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
         line_first_.push_back(line_of_.size());
     }
     for (auto* vector : {&p_, &q_, &r_, &z_, &x_}) vector->resize(slices);
+    const bool has_gradients =
+        std::ranges::any_of(sheets, [](const SheetSystem& sheet) { return !sheet.gradient.empty(); });
+    gradients_.resize(has_gradients ? slices : 0);
+    pulls_.assign(chunks_.size(), 0);
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        for (std::size_t i = 0; i < sheets[s].gradient.size(); ++i) {
+            const bool is_free = sheets[s].fixed[i] == 0;
+            gradients_.set(place_[sheet_first_[s] + i], is_free ? to_float4(sheets[s].gradient[i]) : Float4{});
+        }
+    }
     own_blocks_.resize(slices);
     inverse_blocks_.resize(slices);
     quads_.assign(slices * slice_rows, Float4{});

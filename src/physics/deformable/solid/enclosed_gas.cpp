@@ -4,13 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/deformable_definition.h"
+
 namespace embody::physics::deformable {
-
-namespace {
-
-constexpr double air_pressure = 101'325;  // Pa, of the standard atmosphere (ISO 2533)
-
-}  // namespace
 
 EnclosedGas::EnclosedGas(double pressure, std::span<const std::array<std::uint32_t, 3>> surface,
                          std::span<const Vec3> rest)

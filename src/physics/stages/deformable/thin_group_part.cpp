@@ -249,9 +249,13 @@ void ThinGroupPart::settle_bodies(std::span<const BodyInertia> inertias) {
 // the sheet and of the bodies on it: where a corner stops some of the nodes, the others fly on across the sheet, which
 // stretches it to second order only.
 double ThinGroupPart::unforeseen_stretch(const Member& member, std::span<const TouchedBody> bodies) {
-    ClothSheet& sheet = *member.record().cloth();
-    const double stretch = sheet.unforeseen_energy(part(moves_, member), world_.workers);
-    if (!(stretch > 0)) return 0;
+    const double stretch = member.record().cloth()->unforeseen_energy(part(moves_, member), world_.workers);
+    return stretch > 0 ? stretch / energy_of_motion(member, bodies) : 0;
+}
+
+// Of a sheet and of the bodies on it, J: in a step of free fall from rest at least.
+double ThinGroupPart::energy_of_motion(const Member& member, std::span<const TouchedBody> bodies) const {
+    const ClothSheet& sheet = *member.record().cloth();
     const double gravity = std::max(length(member.substep.gravity), member.substep.settings.thin_contact.min_gravity);
     const double fall = h_ * h_ * gravity * gravity;  // m²/s²
     const Nodes& nodes = sheet.nodes();
@@ -266,7 +270,29 @@ double ThinGroupPart::unforeseen_stretch(const Member& member, std::span<const T
         if (body.inverse_mass > 0)
             motion += (length_squared(body.path_velocity + body.velocity) + fall) / (2 * body.inverse_mass);
     }
-    return stretch / motion;
+    return motion;
+}
+
+// A sheet with gas that falls is thrown back. Of a push j that changes the whole's velocity by Δv the solve takes
+// ½ m j·Δv away (backward Euler), so that the sheet would lie where it lands if it were stopped in one substep. Says
+// whether that is too much of its motion. At rest Δv is zero, in free fall j.
+bool ThinGroupPart::is_struck(std::span<const TouchedBody> bodies) const {
+    for (const Member& member : std::span(members_).first(sheets_)) {
+        const ClothSheet& sheet = *member.record().cloth();
+        if (!sheet.gas().is_active()) continue;
+        const std::span<const Vec3> moves = part(moves_, member);
+        const Nodes& nodes = sheet.nodes();
+        double mass = 0;
+        Vec3 change;  // kg m/s
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            mass += nodes.mass[i];
+            change += nodes.mass[i] * (moves[i] / h_ - nodes.mean_velocity[i]);
+        }
+        const double lost = length(change) * length(change / mass - h_ * member.substep.gravity) / 2;
+        if (lost > world_.settings.solver.deformable.cloth.bounce_tolerance * energy_of_motion(member, bodies))
+            return true;
+    }
+    return false;
 }
 
 // Makes the equations of sheets anew about the solved moves where these were not foreseen, or says that the substep
@@ -390,6 +416,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
         const int iterations = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_,
                                                                     body_moves_, world_.workers);
         if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
+        if (!is_shortest && (iterations == ClothSolver::indefinite || is_struck(bodies))) return Outcome::too_fast;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
         const bool is_last_solve = solves >= max_solves;
         bool has_changed = choose_again(is_last_solve) || travel >= move_tolerance;

@@ -54,6 +54,8 @@ private:
     enum class Stretch : std::uint8_t { foreseen, unforeseen, too_far };
     Stretch linearize_again(bool is_last, bool may_cut, std::span<const TouchedBody> bodies);
     [[nodiscard]] double unforeseen_stretch(const Member& member, std::span<const TouchedBody> bodies);
+    [[nodiscard]] double energy_of_motion(const Member& member, std::span<const TouchedBody> bodies) const;
+    [[nodiscard]] bool is_struck(std::span<const TouchedBody> bodies) const;
     void settle_bodies(std::span<const BodyInertia> inertias);
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
