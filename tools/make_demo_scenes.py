@@ -297,19 +297,19 @@ def awning() -> dict:
 
 
 def beach_balls() -> dict:
-    """An exercise ball and a tube, on which boxes fall, and beach balls. PVC of 10 to 30 MPa and 0.2 to 1.2 mm; 15 to 45 mbar, as makers say and mouths blow."""
-    def film(thickness: float, stiffness: float, pressure: float, nodes: int, damping: float = 0.001) -> dict:
-        return {"kind": "cloth", "thickness": thickness, "area_density": round(1300 * thickness, 3), "stretch_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness, "bend_stiffness": 1e-5, "bend_friction": 0,
+    """An exercise ball and a tube, on which boxes fall, and beach balls. PVC of 15 to 30 MPa and 0.2 to 0.8 mm; 15 to 45 mbar, as makers say and mouths blow."""
+    def film(mass: float, thickness: float, stiffness: float, pressure: float, nodes: int, damping: float = 0.001) -> dict:
+        return {"kind": "cloth", "mass": mass, "thickness": thickness, "stretch_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness, "bend_stiffness": 1e-5, "bend_friction": 0,
                 "damping_rayleigh": damping, "friction_static": 0.6, "friction_dynamic": 0.5, "cloth_nodes": nodes, "internal_pressure": pressure}
 
     entities = [fixed("Floor", [4, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62])]
-    entities.append(sphere("Exercise ball", 0.32, [-0.5, 0.33, 0], [0.3, 0.45, 0.72], category="exercise ball", attributes=film(0.0011, 12000, 4500, 300, 0.003)))
+    entities.append(sphere("Exercise ball", 0.32, [-0.5, 0.33, 0], [0.3, 0.45, 0.72], category="exercise ball", attributes=film(1.25, 0.0008, 12000, 4500, 240, 0.003)))
     big = len(entities)
     entities.append({"name": "Tube", "shape": {"type": "capsule", "radius": 0.15, "half_height": 0.45}, "pose": {"position": [0.5, 0.16, 0.1], "rotation": turn([1, 0, 0], 90)}, "color": [0.85, 0.6, 0.2],
-                     "category": "air mattress", "attributes": film(0.00035, 10000, 2500, 250, 0.003)})
+                     "category": "air mattress", "attributes": film(0.5, 0.00035, 10000, 2500, 200, 0.003)})
     for number, (x, y, mass) in enumerate(((-0.5, 1.2, 6), (0.5, 0.9, 4))):
         entities.append(box(f"Box {number + 1}", [0.1, 0.08, 0.1], [x, y, 0.02], hue(number / 3), turn([0, 1, 0], 20 * number), attributes={"mass": mass, "restitution": 0}))
-    entities += [sphere("Beach ball", 0.17, [x, y, z], color, category="beach ball", attributes=film(0.0002, 6000, 1500, 150))
+    entities += [sphere("Beach ball", 0.17, [x, y, z], color, category="beach ball", attributes=film(0.1, 0.0002, 6000, 1500, 120))
                  for x, y, z, color in ((0.05, 1.2, 0.5, [0.9, 0.35, 0.25]), (0.1, 1.6, -0.5, [0.95, 0.8, 0.3]))]
     actions = [{"name": name, "trigger": {"type": "signal", "button": name}, "receiver": {"index": big}, "effect": {"type": "set_attribute", "name": "internal_pressure", "value": pressure}, "once": False}
                for name, pressure in (("Pump", 9000), ("Let out", 100))]

@@ -148,6 +148,29 @@ TEST(SheetGas, DroppedBallsBounceAndGainNothing) {
     EXPECT_GT(bounced, 0.12);  // 0.02 in whole steps
 }
 
+// Balls of flat triangles that roll slowly or drop by a few centimetres rock from face to face.
+TEST(SheetGas, BallsThatRockComeToRest) {
+    Random random(21);
+    for (int i = 0; i < 8; ++i) {
+        const auto world = make_world();
+        add_plane(*world, friction(0.5));
+        const double radius = random.between(0.12, 0.35), pressure = random.between(1000, 5000);
+        const double stiffness = random.between(4000, 15000);
+        DeformableDefinition definition = cloth_ball(radius, radius / random.between(2.5, 4),
+                                                     {.area_density = random.between(0.2, 1),
+                                                      .stretch_stiffness = stiffness,
+                                                      .shear_stiffness = 0.4 * stiffness,
+                                                      .rayleigh_damping = random.between(0.001, 0.003),
+                                                      .internal_pressure = pressure,
+                                                      .prestretch = 1 / (1 - pressure * radius / 2 / stiffness)});
+        definition.pose.position = {0, radius + random.between(0.005, 0.1), 0};
+        definition.linear_velocity = {random.between(0, 0.3), 0, 0};
+        const DeformableHandle ball = world->create_deformable(definition).value();
+        run(*world, 6);  // up to 8 s and more where each of its swings is taken in parts
+        EXPECT_TRUE(world->is_asleep(ball)) << i;
+    }
+}
+
 // A net over a ball is no sheet that holds gas.
 TEST(SheetGas, IsRefusedInAnOpenSheetOfAWorld) {
     const auto world = make_world();

@@ -17,6 +17,15 @@
 
 namespace embody::physics::stages {
 
+namespace {
+
+// m/s², not 0 in a world without gravity.
+double gravity_for(const Substep& substep) {
+    return std::max(length(substep.gravity), substep.settings.thin_contact.min_gravity);
+}
+
+}  // namespace
+
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments) {
     ThinSurface surface;
     surface.nodes = &record.nodes();
@@ -256,7 +265,7 @@ double ThinGroupPart::unforeseen_stretch(const Member& member, std::span<const T
 // Of a sheet and of the bodies on it, J: in a step of free fall from rest at least.
 double ThinGroupPart::energy_of_motion(const Member& member, std::span<const TouchedBody> bodies) const {
     const ClothSheet& sheet = *member.record().cloth();
-    const double gravity = std::max(length(member.substep.gravity), member.substep.settings.thin_contact.min_gravity);
+    const double gravity = gravity_for(member.substep);
     const double fall = h_ * h_ * gravity * gravity;  // m²/s²
     const Nodes& nodes = sheet.nodes();
     double motion = 0;  // J
@@ -275,8 +284,10 @@ double ThinGroupPart::energy_of_motion(const Member& member, std::span<const Tou
 
 // A sheet with gas that falls is thrown back. Of a push j that changes the whole's velocity by Δv the solve takes
 // ½ m j·Δv away (backward Euler), so that the sheet would lie where it lands if it were stopped in one substep. Says
-// whether that is too much of its motion. At rest Δv is zero, in free fall j.
+// whether that is too much of its motion. At rest Δv is zero, in free fall j. What accelerates less than it falls
+// rocks, and comes to rest.
 bool ThinGroupPart::is_struck(std::span<const TouchedBody> bodies) const {
+    constexpr double rocking = 0.5;  // of gravity. Test: SheetGas.BallsThatRockComeToRest
     for (const Member& member : std::span(members_).first(sheets_)) {
         const ClothSheet& sheet = *member.record().cloth();
         if (!sheet.gas().is_active()) continue;
@@ -288,6 +299,7 @@ bool ThinGroupPart::is_struck(std::span<const TouchedBody> bodies) const {
             mass += nodes.mass[i];
             change += nodes.mass[i] * (moves[i] / h_ - nodes.mean_velocity[i]);
         }
+        if (length(change) <= rocking * mass * h_ * gravity_for(member.substep)) continue;
         const double lost = length(change) * length(change / mass - h_ * member.substep.gravity) / 2;
         if (lost > world_.settings.solver.deformable.cloth.bounce_tolerance * energy_of_motion(member, bodies))
             return true;
