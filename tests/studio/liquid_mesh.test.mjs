@@ -216,6 +216,23 @@ describe("the surface of a liquid", () => {
     }
   });
 
+  it("knows how thick the liquid is, at the rim of a film, too", () => {
+    for (const { random, between, shift } of FAMILY) {
+      const layers = Math.round(between(3, 5));
+      const mesh = meshOf(box([24, layers, 24], between(0.3, 0.8), random), shift);
+      let [sum, count] = [0, 0];
+      mesh.thickness.forEach((thickness, vertex) => {
+        const [x, y, z] = mesh.positions.subarray(3 * vertex, 3 * vertex + 3);
+        assert.ok(thickness > 0 && thickness < 2 * layers, `${thickness} of ${layers} at ${[x, y, z]}`);
+        if (Math.min(x, z, 24 - x, 24 - z) < 6) return;
+        sum += thickness;
+        ++count;
+      });
+      SHOWS("thickness", (sum / count).toFixed(2), "of", layers);
+      assert.ok(Math.abs(sum / count - layers) < 0.6, `${sum / count} of ${layers}`);
+    }
+  });
+
   it("keeps single drops as balls of their volume", () => {
     for (const { between } of FAMILY) {
       const drops = Array.from({ length: 5 }, (_, at) => [5 * at + between(0, 1), between(0, 1), between(0, 1)]);

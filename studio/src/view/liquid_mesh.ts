@@ -3,6 +3,8 @@
 
 /** How often each normal is replaced by the mean of it and its neighbours'. */
 const NORMAL_SMOOTHINGS = 2;
+/** Rings of vertices around a film's rim, whose normals run along the film. */
+const RINGS = 3;
 /** How often the surface is moved to its volume: its area changes on the way. */
 const MOVES = 2;
 
@@ -11,6 +13,8 @@ export interface LiquidMesh {
   positions: Float32Array;
   normals: Float32Array;
   indices: Uint32Array;
+  /** How thick the liquid is below each vertex, against its normal, m. */
+  thickness: Float32Array;
   /** Enclosed volume, m³, and surface area, m². */
   volume: number;
   area: number;
@@ -40,6 +44,15 @@ export class Neighbours {
     }
   }
 
+  /** The least of each vertex's value and its neighbours'. */
+  least(values: Float32Array): Float32Array {
+    const { first, all } = this;
+    const least = values.slice();
+    for (let vertex = 0; vertex < this.count; ++vertex)
+      for (let at = first[vertex]!; at < first[vertex + 1]!; ++at) if (values[all[at]!]! < least[vertex]!) least[vertex] = values[all[at]!]!;
+    return least;
+  }
+
   /** The mean of each vertex's vector and the mean of its neighbours'. */
   mean(vectors: Float32Array): Float32Array {
     const { first, all } = this;
@@ -64,9 +77,15 @@ export class Neighbours {
   }
 }
 
+/** The least of the values around each vertex, as far as RINGS edges away. */
+export function leastAround(values: Float32Array, neighbours: Neighbours): Float32Array {
+  let least = values;
+  for (let ring = 0; ring < RINGS; ++ring) least = neighbours.least(least);
+  return least;
+}
+
 /** Smooth normals of a closed net. */
-export function smoothNormals(net: Float32Array, indices: Uint32Array): Float32Array {
-  const neighbours = new Neighbours(net.length / 3, indices);
+export function smoothNormals(net: Float32Array, indices: Uint32Array, neighbours: Neighbours): Float32Array {
   let normals = normalsOf(net, indices);
   for (let round = 0; round < NORMAL_SMOOTHINGS; ++round) normals = neighbours.mean(normals);
   normalize(normals);

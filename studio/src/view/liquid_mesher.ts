@@ -2,7 +2,7 @@
 // The surface of a liquid from its particles (docs/decisions/0014-liquid-surface.md): where their field is LEVEL, as a mesh of quads
 // with one vertex in each cell that the surface crosses.
 import { LiquidField, NODES, WIDE } from "./liquid_field";
-import { type LiquidMesh, measure, moveInwards, smoothNormals } from "./liquid_mesh";
+import { leastAround, type LiquidMesh, measure, moveInwards, Neighbours, smoothNormals } from "./liquid_mesh";
 
 /** Density at which the net is made: far out, so that thin films and what lies in clumps are whole. */
 const LEVEL = 0.15;
@@ -10,6 +10,8 @@ const LEVEL = 0.15;
 const BEND = 0.3;
 /** How far it is moved inwards to the particles' volume at most, in grid steps. */
 const MOST_INWARDS = 1.3;
+/** Density where the liquid ends. */
+const HALF = 0.5;
 /** A drop is an octahedron with each face divided once. */
 const DROP = dropShape();
 const MOST_DROPS = 4000;
@@ -38,7 +40,8 @@ export class LiquidMesher {
     const net = this.indices.subarray(0, this.indexCount);
     const held = (points.length / 3 - drops.length) * spacing ** 3;
     const body = this.vertices.subarray(0, 3 * this.vertexCount);
-    const bodyNormals = smoothNormals(body, net);
+    const neighbours = new Neighbours(this.vertexCount, net);
+    const bodyNormals = smoothNormals(body, net, neighbours);
     moveInwards(body, bodyNormals, net, held, MOST_INWARDS * spacing);
     const shown = drops.slice(0, MOST_DROPS);
     const positions = new Float32Array(body.length + 3 * DROP.corners.length * shown.length);
@@ -48,7 +51,9 @@ export class LiquidMesher {
     normals.set(bodyNormals);
     indices.set(net);
     addDrops(points, spacing, shown, { positions, normals, indices }, this.vertexCount, net.length);
-    return { positions, normals, indices, ...measure(positions, indices) };
+    const thickness = new Float32Array(positions.length / 3).fill(spacing);
+    thickness.set(leastAround(this.thicknessOf(body, bodyNormals, spacing), neighbours));
+    return { positions, normals, indices, thickness, ...measure(positions, indices) };
   }
 
   // In each cell with nodes on both sides of the surface: a vertex at the mean of the points where its edges cross it.
@@ -139,6 +144,25 @@ export class LiquidMesher {
         }
       }
     }
+  }
+
+  // From each vertex inwards, a grid step at a time, until the liquid ends.
+  private thicknessOf(positions: Float32Array, normals: Float32Array, spacing: number): Float32Array {
+    const thickness = new Float32Array(positions.length / 3);
+    const { field } = this;
+    const [x0, y0, z0] = field.lower as [number, number, number];
+    for (let vertex = 0; vertex < thickness.length; ++vertex) {
+      const at = 3 * vertex;
+      const [x, y, z] = [positions[at]! / spacing - x0, positions[at + 1]! / spacing - y0, positions[at + 2]! / spacing - z0];
+      let [steps, before, here] = [0, 1, 1];
+      while (here > HALF) {
+        ++steps;
+        before = here;
+        here = field.valueAt(Math.round(x - steps * normals[at]!), Math.round(y - steps * normals[at + 1]!), Math.round(z - steps * normals[at + 2]!));
+      }
+      thickness[vertex] = (steps - (HALF - here) / (before - here)) * spacing;
+    }
+    return thickness;
   }
 
   /** Particles around which none of the 27 nodes is inside the surface. */
