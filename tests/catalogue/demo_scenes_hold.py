@@ -75,6 +75,8 @@ def honey(run: Run):
         yield from within("its middle, aside", mean(now, axis), -0.01, 0.01)
     # Some of the honey has run over the bread's edge on to the board; no drop is far from the others.
     yield from within("lowest honey", min(p[1] for p in now), 0.0, 0.055)
+    # The bread's top is at 0.0655 m.
+    yield from within("share of the honey that is over the edge", sum(p[1] < 0.058 for p in now) / len(now), 0.1, 0.6)
     far = sorted(math.hypot(p[0], p[2]) for p in now)
     yield from within("way of the farthest drop beyond those of 99 %", far[-1] - far[int(0.99 * len(far))], 0, 0.02)
 

@@ -1,440 +1,201 @@
 // SPDX-License-Identifier: MIT
-// The surface of a liquid from its particles (docs/decisions/0014-liquid-surface.md): their density on a grid, and the surface
-// where it is LEVEL of the liquid's, as a mesh of quads with one vertex in each cell that the surface crosses.
+// The surface of a liquid from its particles (docs/decisions/0014-liquid-surface.md): where their field is LEVEL, as a mesh of quads
+// with one vertex in each cell that the surface crosses.
+import { LiquidField, NODES, WIDE } from "./liquid_field";
+import { leastAround, type LiquidMesh, measure, moveInwards, Neighbours, smoothNormals } from "./liquid_mesh";
 
-/** Nodes along an edge of a block, and with one more on either side. */
-const EDGE = 8;
-const WIDE = EDGE + 2;
-const NODES = EDGE ** 3;
-/** Fraction of the liquid's density at which the surface is drawn. */
-const LEVEL = 0.42;
-/** Fractions of the displacement to their neighbours' mean that vertices move: first inwards, then back (G. Taubin, 1995). */
-const SMOOTHING = [0.5, -0.52, 0.5, -0.52, 0.5];
+/** Density at which the net is made: far out, so that thin films and what lies in clumps are whole. */
+const LEVEL = 0.15;
+/** The density falls off in a curve: fractions of an edge follow from (density − LEVEL)/(density + BEND), which falls off in a line. */
+const BEND = 0.3;
+/** How far it is moved inwards to the particles' volume at most, in grid steps. */
+const MOST_INWARDS = 1.3;
+/** Density where the liquid ends. */
+const HALF = 0.5;
 /** A drop is an octahedron with each face divided once. */
 const DROP = dropShape();
 const MOST_DROPS = 4000;
 
-/** Triangles, counter-clockwise seen from outside; world, m. */
-export interface LiquidMesh {
-  positions: Float32Array;
-  normals: Float32Array;
-  indices: Uint32Array;
-  /** Enclosed volume, m³, and surface area, m². */
-  volume: number;
-  area: number;
-}
-
 /** Makes meshes from particles; reuses its memory for the next mesh. */
 export class LiquidMesher {
-  private lower = [0, 0, 0];
-  /** Number of blocks along each axis, and the block at each grid place; -1: none. */
-  private span = [0, 0, 0];
-  private table = new Int32Array(0);
-  private places: number[] = [];
-  /** Density that a block's own particles add to each of its nodes, with a margin. */
-  private splat = new Float32Array(0);
-  private density = new Float32Array(0);
-  private smooth = new Float32Array(0);
+  private readonly field = new LiquidField();
   private vertexOf = new Int32Array(0);
-  private readonly positions: number[] = [];
-  private readonly indices: number[] = [];
+  private vertices = new Float32Array(0);
+  private vertexCount = 0;
+  private indices = new Uint32Array(0);
+  private indexCount = 0;
   private readonly padded = new Float32Array(WIDE ** 3);
+  private readonly paddedVertices = new Int32Array(WIDE ** 3);
 
   /** `points`: x y z of each particle, m; `spacing`: edge of a cube of a particle's volume, m. */
   build(points: Float32Array, spacing: number): LiquidMesh {
-    this.positions.length = this.indices.length = 0;
+    this.vertexCount = this.indexCount = 0;
+    let drops: number[] = [];
     if (points.length > 0) {
-      this.layOut(points, spacing);
-      this.addParticles(points, spacing);
-      this.addMargins();
-      this.blur();
+      this.field.build(points, spacing);
       this.makeVertices(spacing);
       this.makeQuads();
+      drops = this.findDrops(points, spacing);
     }
-    const body = this.positions.length;
-    const positions = new Float32Array(body + 3 * DROP.corners.length * this.countDrops(points, spacing));
-    positions.set(this.positions);
-    for (const share of SMOOTHING) smoothen(positions, body, this.indices, share);
-    this.addDrops(points, spacing, positions, body);
-    const indices = new Uint32Array(this.indices);
-    return { positions, normals: normalsOf(positions, indices), indices, ...measure(positions, indices) };
-  }
-
-  private layOut(points: Float32Array, spacing: number): void {
-    const least = [Infinity, Infinity, Infinity];
-    const most = [-Infinity, -Infinity, -Infinity];
-    for (let at = 0; at < points.length; ++at) {
-      const axis = at % 3;
-      if (points[at]! < least[axis]!) least[axis] = points[at]!;
-      if (points[at]! > most[axis]!) most[axis] = points[at]!;
-    }
-    // One more block on either side than contain particles, so that every margin has its block.
-    this.lower = least.map((x) => (Math.floor(x / spacing / EDGE) - 1) * EDGE);
-    this.span = most.map((x, axis) => Math.floor((x / spacing - this.lower[axis]!) / EDGE) + 2);
-    const count = this.span[0]! * this.span[1]! * this.span[2]!;
-    if (this.table.length < count) this.table = new Int32Array(count);
-    this.table.fill(-1, 0, count);
-    this.places.length = 0;
-  }
-
-  private block(place: number): number {
-    let block = this.table[place]!;
-    if (block >= 0) return block;
-    block = this.table[place] = this.places.push(place) - 1;
-    return block;
-  }
-
-  // Adds quadratic B-splines around each particle.
-  private addParticles(points: Float32Array, spacing: number): void {
-    const { lower, span } = this;
-    const row = span[0]!;
-    const layer = span[0]! * span[1]!;
-    // First find the blocks: those of each particle and their neighbours.
-    const blockOf = new Int32Array(points.length / 3);
-    for (let p = 0, at = 0; at < points.length; ++p, at += 3) {
-      const x = Math.round(points[at]! / spacing - lower[0]!);
-      const y = Math.round(points[at + 1]! / spacing - lower[1]!);
-      const z = Math.round(points[at + 2]! / spacing - lower[2]!);
-      const place = (x >> 3) + row * (y >> 3) + layer * (z >> 3);
-      blockOf[p] = this.block(place);
-      const near = (i: number): number => ((i & 7) < 2 ? -1 : (i & 7) > 5 ? 1 : 0);
-      const nx = near(x);
-      const ny = near(y);
-      const nz = near(z);
-      if (nx) this.block(place + nx);
-      if (ny) this.block(place + ny * row);
-      if (nz) this.block(place + nz * layer);
-      if (nx && ny) this.block(place + nx + ny * row);
-      if (ny && nz) this.block(place + ny * row + nz * layer);
-      if (nx && nz) this.block(place + nx + nz * layer);
-      if (nx && ny && nz) this.block(place + nx + ny * row + nz * layer);
-    }
-    this.reserve();
-    const { splat } = this;
-    for (let p = 0, at = 0; at < points.length; ++p, at += 3) {
-      const x = points[at]! / spacing - lower[0]!;
-      const y = points[at + 1]! / spacing - lower[1]!;
-      const z = points[at + 2]! / spacing - lower[2]!;
-      const ix = Math.round(x);
-      const iy = Math.round(y);
-      const iz = Math.round(z);
-      const dx = x - ix;
-      const dy = y - iy;
-      const dz = z - iz;
-      const x0 = 0.5 * (0.5 - dx) ** 2;
-      const x1 = 0.75 - dx * dx;
-      const x2 = 0.5 * (0.5 + dx) ** 2;
-      // The margin's node has number 0, so the stencil begins at the node's own number.
-      let node = blockOf[p]! * WIDE ** 3 + (ix & 7) + WIDE * ((iy & 7) + WIDE * (iz & 7));
-      for (let c = 0; c < 3; ++c) {
-        const wz = c === 0 ? 0.5 * (0.5 - dz) ** 2 : c === 1 ? 0.75 - dz * dz : 0.5 * (0.5 + dz) ** 2;
-        for (let b = 0; b < 3; ++b) {
-          const w = wz * (b === 0 ? 0.5 * (0.5 - dy) ** 2 : b === 1 ? 0.75 - dy * dy : 0.5 * (0.5 + dy) ** 2);
-          splat[node]! += w * x0;
-          splat[node + 1]! += w * x1;
-          splat[node + 2]! += w * x2;
-          node += WIDE;
-        }
-        node += WIDE * (WIDE - 3);
-      }
-    }
-  }
-
-  private reserve(): void {
-    const count = this.places.length;
-    if (this.density.length < count * NODES) {
-      const room = Math.ceil(1.3 * count);
-      this.splat = new Float32Array(room * WIDE ** 3);
-      this.density = new Float32Array(room * NODES);
-      this.smooth = new Float32Array(room * NODES);
-      this.vertexOf = new Int32Array(room * NODES);
-    } else {
-      this.splat.fill(0, 0, count * WIDE ** 3);
-    }
-  }
-
-  private neighbour(block: number, dx: number, dy: number, dz: number): number {
-    const place = this.places[block]!;
-    const { span } = this;
-    const x = (place % span[0]!) + dx;
-    const y = (Math.floor(place / span[0]!) % span[1]!) + dy;
-    const z = Math.floor(place / (span[0]! * span[1]!)) + dz;
-    if (x < 0 || y < 0 || z < 0 || x >= span[0]! || y >= span[1]! || z >= span[2]!) return -1;
-    return this.table[x + span[0]! * (y + span[1]! * z)]!;
-  }
-
-  // Adds a block's margins to the nodes of its neighbours.
-  private addMargins(): void {
-    const { splat, density } = this;
-    // For a neighbour at -1, 0, 1: first and last of the own nodes, and the offset to the neighbour's number of the same node.
-    const first = [0, 0, EDGE - 1];
-    const last = [0, EDGE - 1, EDGE - 1];
-    const shift = [EDGE + 1, 1, 1 - EDGE];
-    for (let block = 0; block < this.places.length; ++block) {
-      const base = block * NODES;
-      density.fill(0, base, base + NODES);
-      for (let n = 0; n < 27; ++n) {
-        const a = n % 3;
-        const b = Math.floor(n / 3) % 3;
-        const c = Math.floor(n / 9);
-        const other = n === 13 ? block : this.neighbour(block, a - 1, b - 1, c - 1);
-        if (other < 0) continue;
-        const from = other * WIDE ** 3;
-        for (let z = first[c]!; z <= last[c]!; ++z) {
-          for (let y = first[b]!; y <= last[b]!; ++y) {
-            const source = from + WIDE * (y + shift[b]! + WIDE * (z + shift[c]!)) + shift[a]!;
-            const target = base + EDGE * (y + EDGE * z);
-            for (let x = first[a]!; x <= last[a]!; ++x) density[target + x]! += splat[source + x]!;
-          }
-        }
-      }
-    }
-  }
-
-  /** A block's values and one row of those around it; 0 where there is no block. */
-  private gather(block: number, values: Float32Array): Float32Array {
-    const { padded } = this;
-    const first = [0, 1, EDGE + 1];
-    const last = [0, EDGE, EDGE + 1];
-    const shift = [EDGE - 1, -1, -1 - EDGE];
-    for (let n = 0; n < 27; ++n) {
-      const a = n % 3;
-      const b = Math.floor(n / 3) % 3;
-      const c = Math.floor(n / 9);
-      const other = n === 13 ? block : this.neighbour(block, a - 1, b - 1, c - 1);
-      for (let z = first[c]!; z <= last[c]!; ++z) {
-        for (let y = first[b]!; y <= last[b]!; ++y) {
-          const target = WIDE * (y + WIDE * z);
-          const source = other * NODES + EDGE * (y + shift[b]! + EDGE * (z + shift[c]!)) + shift[a]!;
-          for (let x = first[a]!; x <= last[a]!; ++x) padded[target + x] = other < 0 ? 0 : values[source + x]!;
-        }
-      }
-    }
-    return padded;
-  }
-
-  // Smooths the density by (1 2 1)/4 along each axis.
-  private blur(): void {
-    const plane = WIDE * WIDE;
-    for (let block = 0; block < this.places.length; ++block) {
-      const field = this.gather(block, this.density);
-      // Each axis also processes the rows of the margin that a later axis needs.
-      for (const [step, side, other] of [
-        [1, WIDE, plane],
-        [WIDE, 1, plane],
-        [plane, 1, WIDE],
-      ] as const) {
-        for (let i = 0; i < WIDE; ++i) {
-          for (let k = 0; k < WIDE; ++k) {
-            let at = i * side + k * other;
-            let before = field[at]!;
-            for (let n = 0; n < EDGE; ++n) {
-              at += step;
-              const own = field[at]!;
-              field[at] = 0.25 * before + 0.5 * own + 0.25 * field[at + step]!;
-              before = own;
-            }
-          }
-        }
-      }
-      const base = block * NODES;
-      for (let z = 0; z < EDGE; ++z)
-        for (let y = 0; y < EDGE; ++y)
-          for (let x = 0; x < EDGE; ++x) this.smooth[base + x + EDGE * (y + EDGE * z)] = field[x + 1 + WIDE * (y + 1 + WIDE * (z + 1))]!;
-    }
+    const net = this.indices.subarray(0, this.indexCount);
+    const held = (points.length / 3 - drops.length) * spacing ** 3;
+    const body = this.vertices.subarray(0, 3 * this.vertexCount);
+    const neighbours = new Neighbours(this.vertexCount, net);
+    const bodyNormals = smoothNormals(body, net, neighbours);
+    moveInwards(body, bodyNormals, net, held, MOST_INWARDS * spacing);
+    const shown = drops.slice(0, MOST_DROPS);
+    const positions = new Float32Array(body.length + 3 * DROP.corners.length * shown.length);
+    const normals = new Float32Array(positions.length);
+    const indices = new Uint32Array(net.length + DROP.faces.length * shown.length);
+    positions.set(body);
+    normals.set(bodyNormals);
+    indices.set(net);
+    addDrops(points, spacing, shown, { positions, normals, indices }, this.vertexCount, net.length);
+    const thickness = new Float32Array(positions.length / 3).fill(spacing);
+    thickness.set(leastAround(this.thicknessOf(body, bodyNormals, spacing), neighbours));
+    return { positions, normals, indices, thickness, ...measure(positions, indices) };
   }
 
   // In each cell with nodes on both sides of the surface: a vertex at the mean of the points where its edges cross it.
   private makeVertices(spacing: number): void {
-    const { positions, vertexOf, span } = this;
+    const { field } = this;
+    if (this.vertexOf.length < field.count * NODES) this.vertexOf = new Int32Array(Math.ceil(1.3 * field.count) * NODES);
+    const { vertexOf } = this;
     const corner = [0, 1, WIDE, WIDE + 1, WIDE * WIDE, WIDE * WIDE + 1, WIDE * WIDE + WIDE, WIDE * WIDE + WIDE + 1];
-    const value = new Float64Array(8);
-    for (let block = 0; block < this.places.length; ++block) {
-      const field = this.gather(block, this.smooth);
-      const place = this.places[block]!;
-      const x0 = this.lower[0]! + EDGE * (place % span[0]!);
-      const y0 = this.lower[1]! + EDGE * (Math.floor(place / span[0]!) % span[1]!);
-      const z0 = this.lower[2]! + EDGE * Math.floor(place / (span[0]! * span[1]!));
+    const inside = new Uint8Array(WIDE ** 3);
+    for (let block = 0; block < field.count; ++block) {
+      vertexOf.fill(-1, block * NODES, (block + 1) * NODES);
+      const values = field.gather(block, field.values, this.padded, 0);
+      let filled = 0;
+      for (let at = 0; at < inside.length; ++at) filled += inside[at] = values[at]! > LEVEL ? 1 : 0;
+      if (filled === 0 || filled === inside.length) continue;
+      this.makeRoom(NODES);
+      const { vertices } = this;
+      const [x0, y0, z0] = field.corner(block);
       for (let node = 0; node < NODES; ++node) {
         const x = node & 7;
         const y = (node >> 3) & 7;
         const z = node >> 6;
         const at = x + 1 + WIDE * (y + 1 + WIDE * (z + 1));
-        vertexOf[block * NODES + node] = -1;
-        let inside = 0;
-        for (let c = 0; c < 8; ++c) {
-          value[c] = field[at + corner[c]!]! - LEVEL;
-          if (value[c]! > 0) inside |= 1 << c;
-        }
-        if (inside === 0 || inside === 255) continue;
-        let sx = 0;
-        let sy = 0;
-        let sz = 0;
-        let count = 0;
+        let sum = 0;
+        for (let c = 0; c < 8; ++c) sum += inside[at + corner[c]!]!;
+        if (sum === 0 || sum === 8) continue;
+        let [sx, sy, sz, count] = [0, 0, 0, 0];
         for (let c = 0; c < 8; ++c) {
           for (let axis = 1; axis < 8; axis <<= 1) {
-            const d = c | axis;
-            if (d === c || value[c]! > 0 === value[d]! > 0) continue;
-            const share = value[c]! / (value[c]! - value[d]!);
+            const [from, to] = [at + corner[c]!, at + corner[c | axis]!];
+            if (inside[from] === inside[to]) continue;
+            const first = (values[from]! - LEVEL) / (values[from]! + BEND);
+            const share = first / (first - (values[to]! - LEVEL) / (values[to]! + BEND));
             sx += (c & 1) + (axis === 1 ? share : 0);
             sy += ((c >> 1) & 1) + (axis === 2 ? share : 0);
             sz += (c >> 2) + (axis === 4 ? share : 0);
             ++count;
           }
         }
-        vertexOf[block * NODES + node] = positions.length / 3;
-        positions.push((x0 + x + sx / count) * spacing, (y0 + y + sy / count) * spacing, (z0 + z + sz / count) * spacing);
+        const vertex = 3 * this.vertexCount;
+        vertexOf[block * NODES + node] = this.vertexCount++;
+        vertices[vertex] = (x0 + x + sx / count) * spacing;
+        vertices[vertex + 1] = (y0 + y + sy / count) * spacing;
+        vertices[vertex + 2] = (z0 + z + sz / count) * spacing;
       }
     }
   }
 
+  private makeRoom(more: number): void {
+    if (this.vertices.length >= 3 * (this.vertexCount + more)) return;
+    const { vertices } = this;
+    this.vertices = new Float32Array(2 * (vertices.length + 3 * more));
+    this.vertices.set(vertices);
+  }
+
   // Around each edge of the grid that crosses the surface: a quad of the vertices of the four cells around it.
   private makeQuads(): void {
-    const { smooth, indices } = this;
-    const step = [1, EDGE, EDGE * EDGE];
-    for (let block = 0; block < this.places.length; ++block) {
-      const above = [this.neighbour(block, 1, 0, 0), this.neighbour(block, 0, 1, 0), this.neighbour(block, 0, 0, 1)];
-      for (let node = 0; node < NODES; ++node) {
-        const value = smooth[block * NODES + node]!;
+    const { field, vertexOf } = this;
+    // The cell at an edge's first node has a vertex, and at most three such edges.
+    if (this.indices.length < 18 * this.vertexCount) this.indices = new Uint32Array(24 * this.vertexCount);
+    const { indices } = this;
+    const step = [1, WIDE, WIDE * WIDE];
+    for (let block = 0; block < field.count; ++block) {
+      const base = block * NODES;
+      let node = 0;
+      while (node < NODES && vertexOf[base + node]! < 0) ++node;
+      if (node === NODES) continue;
+      const values = field.gather(block, field.values, this.padded, 0);
+      const cells = field.gather(block, vertexOf, this.paddedVertices, -1);
+      for (; node < NODES; ++node) {
+        const c = vertexOf[base + node]!;
+        if (c < 0) continue;
+        const at = (node & 7) + 1 + WIDE * (((node >> 3) & 7) + 1 + WIDE * ((node >> 6) + 1));
+        const isInside = values[at]! > LEVEL;
         for (let axis = 0; axis < 3; ++axis) {
-          let next = 0;
-          if (((node >> (3 * axis)) & 7) < EDGE - 1) {
-            next = smooth[block * NODES + node + step[axis]!]!;
-          } else {
-            const other = above[axis]!;
-            if (other >= 0) next = smooth[other * NODES + node - (EDGE - 1) * step[axis]!]!;
-          }
-          if (value > LEVEL === next > LEVEL) continue;
-          const number = [node & 7, (node >> 3) & 7, node >> 6];
-          const u = (axis + 1) % 3;
-          const v = (axis + 2) % 3;
-          const a = this.vertex(block, number, -1, -1, u, v);
-          const b = this.vertex(block, number, 0, -1, u, v);
-          const c = this.vertex(block, number, 0, 0, u, v);
-          const d = this.vertex(block, number, -1, 0, u, v);
-          if (a < 0 || b < 0 || c < 0 || d < 0) continue;
-          if (value > LEVEL) indices.push(a, b, c, a, c, d);
-          else indices.push(a, c, b, a, d, c);
+          if (isInside === values[at + step[axis]!]! > LEVEL) continue;
+          const u = step[(axis + 1) % 3]!;
+          const v = step[(axis + 2) % 3]!;
+          const [a, b, d] = [cells[at - u - v]!, cells[at - v]!, cells[at - u]!];
+          if (a < 0 || b < 0 || d < 0) continue;
+          const to = this.indexCount;
+          this.indexCount += 6;
+          indices[to] = indices[to + 3] = a;
+          indices[to + 1] = isInside ? b : c;
+          indices[to + 2] = isInside ? c : b;
+          indices[to + 4] = isInside ? c : d;
+          indices[to + 5] = isInside ? d : c;
         }
       }
     }
   }
 
-  private vertex(block: number, number: readonly number[], du: number, dv: number, u: number, v: number): number {
-    const at = [number[0]!, number[1]!, number[2]!];
-    at[u]! += du;
-    at[v]! += dv;
-    let own = block;
-    if (at[u]! < 0 || at[v]! < 0) {
-      const over = [0, 0, 0];
-      if (at[u]! < 0) over[u] = -1;
-      if (at[v]! < 0) over[v] = -1;
-      own = this.neighbour(block, over[0]!, over[1]!, over[2]!);
-      if (own < 0) return -1;
+  // From each vertex inwards, a grid step at a time, until the liquid ends.
+  private thicknessOf(positions: Float32Array, normals: Float32Array, spacing: number): Float32Array {
+    const thickness = new Float32Array(positions.length / 3);
+    const { field } = this;
+    const [x0, y0, z0] = field.lower as [number, number, number];
+    for (let vertex = 0; vertex < thickness.length; ++vertex) {
+      const at = 3 * vertex;
+      const [x, y, z] = [positions[at]! / spacing - x0, positions[at + 1]! / spacing - y0, positions[at + 2]! / spacing - z0];
+      let [steps, before, here] = [0, 1, 1];
+      while (here > HALF) {
+        ++steps;
+        before = here;
+        here = field.valueAt(Math.round(x - steps * normals[at]!), Math.round(y - steps * normals[at + 1]!), Math.round(z - steps * normals[at + 2]!));
+      }
+      thickness[vertex] = (steps - (HALF - here) / (before - here)) * spacing;
     }
-    return this.vertexOf[own * NODES + (at[0]! & 7) + EDGE * ((at[1]! & 7) + EDGE * (at[2]! & 7))]!;
+    return thickness;
   }
 
-  /** Whether none of the 27 nodes around the particle is inside the surface. */
-  private isDrop(points: Float32Array, at: number, spacing: number): boolean {
-    const { lower } = this;
-    const x = Math.round(points[at]! / spacing - lower[0]!);
-    const y = Math.round(points[at + 1]! / spacing - lower[1]!);
-    const z = Math.round(points[at + 2]! / spacing - lower[2]!);
-    if (this.valueAt(x, y, z) > LEVEL) return false;
-    for (let n = 0; n < 27; ++n) {
-      if (this.valueAt(x + (n % 3) - 1, y + (Math.floor(n / 3) % 3) - 1, z + Math.floor(n / 9) - 1) > LEVEL) return false;
+  /** Particles around which none of the 27 nodes is inside the surface. */
+  private findDrops(points: Float32Array, spacing: number): number[] {
+    const { field } = this;
+    const { lower } = field;
+    const found: number[] = [];
+    for (let at = 0; at < points.length; at += 3) {
+      const x = Math.round(points[at]! / spacing - lower[0]!);
+      const y = Math.round(points[at + 1]! / spacing - lower[1]!);
+      const z = Math.round(points[at + 2]! / spacing - lower[2]!);
+      // The particle's own node is inside in most cases.
+      let isDrop = field.valueAt(x, y, z) <= LEVEL;
+      for (let n = 0; isDrop && n < 27; ++n) isDrop = field.valueAt(x + (n % 3) - 1, y + (Math.floor(n / 3) % 3) - 1, z + Math.floor(n / 9) - 1) <= LEVEL;
+      if (isDrop) found.push(at);
     }
-    return true;
-  }
-
-  private valueAt(x: number, y: number, z: number): number {
-    const { span } = this;
-    const block = this.table[(x >> 3) + span[0]! * ((y >> 3) + span[1]! * (z >> 3))]!;
-    return block < 0 ? 0 : this.smooth[block * NODES + (x & 7) + EDGE * ((y & 7) + EDGE * (z & 7))]!;
-  }
-
-  private countDrops(points: Float32Array, spacing: number): number {
-    let count = 0;
-    for (let at = 0; at < points.length && count < MOST_DROPS; at += 3) if (this.isDrop(points, at, spacing)) ++count;
-    return count;
-  }
-
-  private addDrops(points: Float32Array, spacing: number, positions: Float32Array, first: number): void {
-    const radius = Math.cbrt(3 / (4 * Math.PI)) * spacing;
-    let to = first;
-    for (let at = 0; at < points.length && to < positions.length; at += 3) {
-      if (!this.isDrop(points, at, spacing)) continue;
-      for (const index of DROP.faces) this.indices.push(to / 3 + index);
-      for (const corner of DROP.corners)
-        for (let axis = 0; axis < 3; ++axis) positions[to++] = points[at + axis]! + radius * corner[axis]!;
-    }
+    return found;
   }
 }
 
-/** Moves the vertices up to `end` by a fraction `share` of the displacement to the mean of their neighbours. */
-function smoothen(positions: Float32Array, end: number, indices: readonly number[], share: number): void {
-  const sum = new Float32Array(end);
-  const count = new Uint8Array(end / 3);
-  // Each edge of the net is in two triangles in opposite directions, the diagonals too: weights are those of a triangle mesh.
-  for (let at = 0; at < indices.length; at += 3) {
-    for (let k = 0; k < 3; ++k) {
-      const from = indices[at + k]!;
-      const to = indices[at + ((k + 1) % 3)]!;
-      sum[3 * from]! += positions[3 * to]!;
-      sum[3 * from + 1]! += positions[3 * to + 1]!;
-      sum[3 * from + 2]! += positions[3 * to + 2]!;
-      ++count[from]!;
+/** Writes balls of a particle's volume behind the first `vertices` and `indices` of the arrays. */
+function addDrops(points: Float32Array, spacing: number, drops: readonly number[], into: Pick<LiquidMesh, "positions" | "normals" | "indices">, vertices: number, indices: number): void {
+  const radius = Math.cbrt(3 / (4 * Math.PI)) * spacing;
+  for (const at of drops) {
+    for (const face of DROP.faces) into.indices[indices++] = vertices + face;
+    for (const corner of DROP.corners) {
+      for (let axis = 0; axis < 3; ++axis) {
+        into.positions[3 * vertices + axis] = points[at + axis]! + radius * corner[axis]!;
+        into.normals[3 * vertices + axis] = corner[axis]!;
+      }
+      ++vertices;
     }
   }
-  for (let at = 0; at < end; ++at) {
-    const neighbours = count[Math.floor(at / 3)]!;
-    if (neighbours > 0) positions[at]! += share * (sum[at]! / neighbours - positions[at]!);
-  }
-}
-
-function normalsOf(positions: Float32Array, indices: Uint32Array): Float32Array {
-  const normals = new Float32Array(positions.length);
-  for (let at = 0; at < indices.length; at += 3) {
-    const [nx, ny, nz] = faceNormal(positions, indices, at);
-    for (let k = 0; k < 3; ++k) {
-      const vertex = 3 * indices[at + k]!;
-      normals[vertex]! += nx;
-      normals[vertex + 1]! += ny;
-      normals[vertex + 2]! += nz;
-    }
-  }
-  for (let at = 0; at < normals.length; at += 3) {
-    const size = Math.hypot(normals[at]!, normals[at + 1]!, normals[at + 2]!) || 1;
-    for (let axis = 0; axis < 3; ++axis) normals[at + axis]! /= size;
-  }
-  return normals;
-}
-
-/** A normal whose length is twice the triangle's area. */
-function faceNormal(p: Float32Array, indices: Uint32Array, at: number): [number, number, number] {
-  const a = 3 * indices[at]!;
-  const b = 3 * indices[at + 1]!;
-  const c = 3 * indices[at + 2]!;
-  const ux = p[b]! - p[a]!;
-  const uy = p[b + 1]! - p[a + 1]!;
-  const uz = p[b + 2]! - p[a + 2]!;
-  const vx = p[c]! - p[a]!;
-  const vy = p[c + 1]! - p[a + 1]!;
-  const vz = p[c + 2]! - p[a + 2]!;
-  return [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-}
-
-function measure(positions: Float32Array, indices: Uint32Array): { volume: number; area: number } {
-  let volume = 0;
-  let area = 0;
-  for (let at = 0; at < indices.length; at += 3) {
-    const [nx, ny, nz] = faceNormal(positions, indices, at);
-    const a = 3 * indices[at]!;
-    area += Math.hypot(nx, ny, nz) / 2;
-    volume += (positions[a]! * nx + positions[a + 1]! * ny + positions[a + 2]! * nz) / 6;
-  }
-  return { volume, area };
 }
 
 function dropShape(): { corners: number[][]; faces: number[] } {

@@ -12,7 +12,6 @@ import {
   type Material,
   Mesh,
   MeshLambertMaterial,
-  MeshStandardMaterial,
   OneFactor,
   OneMinusSrcAlphaFactor,
   type Raycaster,
@@ -27,6 +26,7 @@ import {
 } from "three";
 import type { PointSet } from "../connection/frame";
 import { lookOf, type Optics, WATER } from "./liquid_look";
+import { refractingLiquid } from "./liquid_material";
 import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import type { Quality } from "./tint";
 
@@ -65,17 +65,15 @@ outgoingLight = mix(outgoingLight, stateTint.rgb, stateTint.a);
 #include <opaque_fragment>
 gl_FragColor.a = 0.0;`;
 
-interface Uniforms {
-  [name: string]: Uniform;
-}
-
-/** The surface of one entity's liquid: it filters the light from behind, then adds its own. */
+/** The surface of one entity's liquid: it filters the light from behind, then adds its own; in full quality it refracts, in one pass. */
 export class LiquidSurface {
   readonly mesh = new Group();
   readonly bounds = new Box3();
   readonly isLiquid = true;
   readonly geometry = new BufferGeometry();
-  private readonly uniforms: Uniforms = {
+  private readonly uniforms = {
+    absorption: new Uniform(new Vector3()),
+    scattering: new Uniform(0),
     through: new Uniform(new Vector3(1, 1, 1)),
     sky: new Uniform(new Color(0.75, 0.8, 0.85)),
     stateTint: new Uniform(new Vector4()),
@@ -99,6 +97,7 @@ export class LiquidSurface {
     // Empty until the first mesh has been made.
     this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(3), 3));
     this.geometry.setAttribute("normal", new BufferAttribute(new Float32Array(3), 3));
+    this.geometry.setAttribute("thickness", new BufferAttribute(new Float32Array(1), 1));
     this.geometry.setIndex(new BufferAttribute(new Uint32Array(1), 1));
     this.geometry.setDrawRange(0, 0);
     const filter = new ShaderMaterial({
@@ -113,6 +112,7 @@ export class LiquidSurface {
     });
     this.filter = new Mesh(this.geometry, filter);
     this.glow = new Mesh(this.geometry, this.glowMaterial(quality));
+    this.filter.visible = quality === "low";
     for (const mesh of [this.filter, this.glow]) {
       mesh.frustumCulled = false;
       mesh.userData["batch"] = { entityAt: () => index };
@@ -180,6 +180,7 @@ export class LiquidSurface {
     this.makeRoom(made.positions.length / 3, made.indices.length);
     renew(this.geometry.getAttribute("position") as BufferAttribute, made.positions);
     renew(this.geometry.getAttribute("normal") as BufferAttribute, made.normals);
+    renew(this.geometry.getAttribute("thickness") as BufferAttribute, made.thickness);
     renew(this.geometry.index!, made.indices);
     this.geometry.setDrawRange(0, made.indices.length);
     const size = this.bounds.getSize(new Vector3());
@@ -199,16 +200,17 @@ export class LiquidSurface {
   }
 
   setTint([red, green, blue, amount]: readonly number[]): void {
-    (this.uniforms["stateTint"]!.value as Vector4).set(red!, green!, blue!, SHARE_OF_TINT * amount!);
+    this.uniforms.stateTint.value.set(red!, green!, blue!, SHARE_OF_TINT * amount!);
   }
 
   tint(): number[] {
-    return (this.uniforms["stateTint"]!.value as Vector4).toArray();
+    return this.uniforms.stateTint.value.toArray();
   }
 
   setQuality(quality: Quality): void {
     this.glow.material.dispose();
     this.glow.material = this.glowMaterial(quality);
+    this.filter.visible = quality === "low";
     this.applyLook();
   }
 
@@ -227,14 +229,17 @@ export class LiquidSurface {
         }
       : this.optics;
     const look = lookOf(optics, this.thickness);
-    (this.uniforms["through"]!.value as Vector3).fromArray(look.through);
-    (this.glow.material as MeshStandardMaterial).color.setRGB(...look.back);
+    this.uniforms.through.value.fromArray(look.through);
+    this.uniforms.absorption.value.fromArray(optics.absorption);
+    this.uniforms.scattering.value = optics.scattering;
+    // A refracting surface does this at each point.
+    if (this.filter.visible) (this.glow.material as MeshLambertMaterial).color.setRGB(...look.back);
     this.glow.castShadow = Math.max(...look.through) < 0.5;
   }
 
   private glowMaterial(quality: Quality): Material {
-    const material =
-      quality === "low" ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.12, metalness: 0, envMapIntensity: 1.5 });
+    if (quality === "high") return refractingLiquid(this.uniforms);
+    const material = new MeshLambertMaterial();
     material.transparent = true;
     material.side = material.shadowSide = FrontSide;
     material.blending = CustomBlending;
@@ -247,9 +252,9 @@ export class LiquidSurface {
       Object.assign(shader.uniforms, this.uniforms);
       shader.fragmentShader = shader.fragmentShader
         .replace("#include <common>", "#include <common>\nuniform vec3 sky;\nuniform vec4 stateTint;")
-        .replace("#include <opaque_fragment>", quality === "low" ? GLOW : GLOW.replace("outgoingLight += mirrored * sky;", ""));
+        .replace("#include <opaque_fragment>", GLOW);
     };
-    material.customProgramCacheKey = () => `liquid ${quality}`;
+    material.customProgramCacheKey = () => "liquid";
     return material;
   }
 
@@ -262,6 +267,7 @@ export class LiquidSurface {
     const made = (array: Float32Array | Uint32Array, size: number) => new BufferAttribute(array, size).setUsage(DynamicDrawUsage);
     this.geometry.setAttribute("position", made(new Float32Array(3 * room(vertices)), 3));
     this.geometry.setAttribute("normal", made(new Float32Array(3 * room(vertices)), 3));
+    this.geometry.setAttribute("thickness", made(new Float32Array(room(vertices)), 1));
     this.geometry.setIndex(made(new Uint32Array(room(indices)), 1));
   }
 

@@ -15,6 +15,7 @@ export interface FromLiquidWorker {
   positions: Float32Array;
   normals: Float32Array;
   indices: Uint32Array;
+  thickness: Float32Array;
   volume: number;
   area: number;
 }
@@ -48,7 +49,7 @@ function mesh(index: number, part: number): void {
   for (let at = 0; at < to.length; ++at) now[at] = from[at]! + part * (to[at]! - from[at]!);
   const made = mesher.build(now, points.spacing);
   const message: FromLiquidWorker = { index, ...made };
-  postMessage(message, { transfer: [made.positions.buffer, made.normals.buffer, made.indices.buffer] });
+  postMessage(message, { transfer: [made.positions.buffer, made.normals.buffer, made.indices.buffer, made.thickness.buffer] });
 }
 
 onmessage = (event: MessageEvent<ToLiquidWorker>) => {
