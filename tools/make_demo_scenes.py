@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
 ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an awning
-under a tap, beach balls. The others there were built by hand.
+under a tap, beach balls, ice that melts. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -316,9 +316,36 @@ def beach_balls() -> dict:
     return scene("Beach balls", "Balls and a tube of closed cloth with gas inside (Internal pressure). Boxes fall on them. Buttons pump the big ball up and let its air out.", [1.5, 1.3, 1.9], [0, 0.35, 0], entities, actions=actions)
 
 
+def melting_ice() -> dict:
+    """Ice floats on the water of a dish, and a snowman stands in another one. After 3 s the ice melts into the water, whose level stays, after 5 s the snowman melts, after 9 s all of it freezes.
+
+    The snowman's density is that of firn: it becomes as much liquid as it fills."""
+    glass, white = [0.72, 0.83, 0.88], [0.93, 0.96, 1.0]
+    top, half, rim, wall = 0.4, 0.16, 0.05, 0.008
+    entities = [{**fixed("Floor", [2, 0.1, 2], [0, -0.1, 0], [0.6, 0.55, 0.5], friction_static=0.6, friction_dynamic=0.5), "finish": "parquet"},
+                fixed("Table", [0.55, top / 2, 0.3], [0, top / 2 - 2 * wall, 0], [0.45, 0.32, 0.22])]
+    for x in (-0.22, 0.22):
+        entities.append(fixed("Dish", [half + 2 * wall, wall, half + 2 * wall], [x, top - wall, 0], glass))
+        for side in (-1, 1):
+            entities.append(fixed("Rim", [wall, rim, half + 2 * wall], [x + side * (half + wall), top + rim, 0], glass))
+            entities.append(fixed("Rim", [half, rim, wall], [x, top + rim, side * (half + wall)], glass))
+    entities.append(box("Water", [half, 0.035, half], [-0.22, top + 0.035, 0], [0.6, 0.8, 0.9], attributes={"kind": "fluid", "particle_budget": 7000}))
+    water = len(entities)
+    for number, (x, z, degrees) in enumerate([(-0.08, 0.06, 10), (0.05, 0.08, 35), (0.08, -0.05, 60), (-0.05, -0.07, 80)]):
+        entities.append(box(f"Ice {number + 1}", [0.03, 0.03, 0.03], [-0.22 + x, top + 0.09, z], white, turn([0, 1, 0], degrees), attributes={"density": 917}))
+    balls = [{"type": "sphere", "radius": radius, "position": [0, y, 0]} for radius, y in ((0.06, 0), (0.045, 0.09), (0.03, 0.155))]
+    entities.append({"name": "Snowman", "shape": {"type": "compound", "children": balls}, "pose": {"position": [0.22, top + 0.061, 0]}, "color": white, "attributes": {"density": 550, "particle_budget": 3000}})
+    snowman = len(entities)
+    timed = [("melt the ice", 3, water + number, {"type": "melt", "into": water}) for number in range(1, 5)]
+    timed += [("melt the snowman", 5, snowman, {"type": "melt"}), ("freeze the water", 9, water, {"type": "freeze"})]
+    actions = [{"name": name, "trigger": {"type": "time", "time": time}, "receiver": {"index": receiver}, "effect": effect} for name, time, receiver, effect in timed]
+    return scene("Melting ice", "Ice melts into the water that it floats on, whose level stays as it is. A snowman melts too, and in the end the water freezes.", [0.5, 1.0, 0.85], [0, top + 0.03, 0], entities,
+                 actions=actions)
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls, melting_ice):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -223,6 +223,26 @@ def awning(run: Run):
     yield from within("share of the water in the tub at the end", len(tub) / len(run.points(water)), 0.98, 1)
 
 
+def melting_ice(run: Run):
+    (water,), (snowman,) = run.called("Water"), run.called("Snowman")
+    # The surface: the height below which 98 % of the drops lie. By Archimedes the water of the ice fills what it displaced.
+    floating, melted = run.seconds[2], run.seconds[8]
+    height = lambda line: sorted(p[1] for p in run.points(water, line))[int(0.98 * len(run.points(water, line)))]
+    yield from within("rise of the water by what melts", height(melted) - height(floating), -0.004, 0.002)
+    # Four cubes of 6 cm and 917 kg/m³ in 7.2 litres.
+    yield from within("drops then over those before", len(run.points(water, melted)) / len(run.points(water, run.first)), 1.1, 1.12)
+    if snowman in melted or any(index in melted for index in run.called("Ice")):
+        yield "something has not melted"
+    (liquid,) = [index for index, entity in melted.items() if index >= 2**31 and "points" in entity]
+    inside = [p for p in run.points(liquid, melted) if abs(p[0] - 0.22) < 0.16 and abs(p[2]) < 0.16 and p[1] > 0.4]
+    yield from within("share of the snowman in its dish", len(inside) / len(run.points(liquid, melted)), 0.97, 1)
+    ice = [entity for index, entity in run.last.items() if index >= 2**31 and "points" not in entity]
+    if water in run.last or not ice:
+        yield "the water has not frozen"
+    for entity in ice:
+        yield from within("height of the frozen water", entity["position"][1], -0.01, 0.46)
+
+
 def sheet_metal(run: Run):
     # Tongues of 0.6 m, held at 0.7 m: by its weight alone one hangs 4 cm.
     lowest = {name: min(p[1] for p in run.points(run.called(name)[0])) for name in ("Spring steel", "Soft steel")}
@@ -265,6 +285,7 @@ SCENES = {
     "honey_on_bread": (8, False, honey),
     "hourglass": (12, True, hourglass),
     "joints": (3, False, joints),
+    "melting_ice": (12, False, melting_ice),
     "newtons_cradle": (6, False, newtons_cradle),
     "pool_table": (8, False, pool_table),
     "rope_bridge": (4, False, bridge),

@@ -135,6 +135,8 @@ void add_actions(Document& document) {
                               Remove{},
                               SetEnabled{false},
                               SetOpen{false},
+                              Melt{3},
+                              Freeze{},
                               Pause{}};
     std::uint32_t id = 1;
     for (const Trigger& trigger : triggers)

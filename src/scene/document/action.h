@@ -150,14 +150,28 @@ inline constexpr auto fields_of<SetOpen> = std::tuple{
     always_saved("open", &SetOpen::open, "whether the receiver's tap and drain are open"),
 };
 
+/// The receiver becomes liquid, with its mass and momenta (docs/physics/melting.md).
+struct Melt {
+    EntityIndex into = 0;
+};
+template <>
+inline constexpr auto fields_of<Melt> = std::tuple{
+    always_saved("into", &Melt::into,
+                 "index of the liquid that gains its drops; 0: it becomes a liquid of its own matter",
+                 {0, last_document_index}),
+};
+
+/// Each connected component of the receiver, a liquid, becomes a rigid thing, with its mass and momenta.
+struct Freeze {};
+
 struct Pause {};
 
-using Effect =
-    std::variant<SetAttribute, ApplyImpulse, ApplyForce, SetVelocity, Spawn, Remove, SetEnabled, SetOpen, Pause>;
+using Effect = std::variant<SetAttribute, ApplyImpulse, ApplyForce, SetVelocity, Spawn, Remove, SetEnabled, SetOpen,
+                            Melt, Freeze, Pause>;
 template <>
-inline constexpr std::array<const char*, 9> alternatives_of<Effect> = {"set_attribute", "apply_impulse", "apply_force",
-                                                                       "set_velocity",  "spawn",         "remove",
-                                                                       "set_enabled",   "set_open",      "pause"};
+inline constexpr std::array<const char*, 11> alternatives_of<Effect> = {
+    "set_attribute", "apply_impulse", "apply_force", "set_velocity", "spawn", "remove",
+    "set_enabled",   "set_open",      "melt",        "freeze",       "pause"};
 
 /// The paper's Action = {act_name, act_sender, act_receiver, act_id, act_param} (definition 6); the parameters are the
 /// trigger and the effect.

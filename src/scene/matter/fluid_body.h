@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/matter/liquids.h"
+#include "scene/matter/momenta.h"
 #include "scene/matter/moving_points.h"
 
 namespace embody::scene {
@@ -36,6 +39,13 @@ public:
     [[nodiscard]] Liquids::Part* part() const { return part_; }
     /// Taps wait while it has so many.
     [[nodiscard]] std::size_t max_drops() const;
+    [[nodiscard]] double particle_mass() const;  ///< kg
+    /// Gains what has this mass (kg) as drops that `make_drops` makes for a number of them: whole drops, so that of all
+    /// that it ever gains it is no more than half a drop ahead or behind. Together they have these momenta.
+    Result<void> gain(const Momenta& momenta,
+                      const std::function<Result<std::vector<physics::FluidDrop>>(std::size_t)>& make_drops);
+    /// Its drops are these, and have these momenta together: what follows when it was made for a thing that melts.
+    Result<void> begin_with(std::span<const physics::FluidDrop> drops, const Momenta& momenta);
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
@@ -60,7 +70,8 @@ private:
     [[nodiscard]] std::vector<physics::FluidDrop> particles() const;  ///< in the order of their ids
     [[nodiscard]] std::size_t count() const;
     Result<void> put(const std::vector<physics::FluidDrop>& particles);
-    [[nodiscard]] double particle_mass() const;
+    /// Gives its last particles, as many as `velocities`, those nearest to these that have the momenta together.
+    Result<void> set_last_velocities(const std::vector<Vec3>& velocities, const Momenta& momenta);
     /// Fills the shape: sets the cell size and returns the places of the particles, in the shape's frame, m.
     Result<std::vector<Vec3>> fill(const LiquidDefinition& definition);
 
@@ -74,10 +85,12 @@ private:
     Join join_ = Join::none_other;
     Liquids::Part* part_ = nullptr;         ///< null while it is disabled
     std::vector<physics::FluidDrop> kept_;  ///< state of the particles while it is disabled
+    double ahead_ = 0;                      ///< what it has gained in drops beyond what melted, kg
     bool has_run_ = false;                  ///< whether kept_ is of a run, and not as it was filled
 };
 
 /// Null for points that are no liquid, and for a null pointer.
 inline const FluidBody* as_liquid(const MovingPoints* points) { return dynamic_cast<const FluidBody*>(points); }
+inline FluidBody* as_liquid(MovingPoints* points) { return dynamic_cast<FluidBody*>(points); }
 
 }  // namespace embody::scene

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
 
 #include "scene/embody/filled_region.h"
 
@@ -46,6 +49,26 @@ std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, 
     return places;
 }
 
+// Leaves `count` of the places, in their order. Those that go follow the golden ratio, whatever the lattice's rows.
+std::vector<Vec3> thinned(const std::vector<Vec3>& places, std::size_t count) {
+    std::vector<std::size_t> order(places.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto rank = [](std::size_t i) {
+        const double turns = static_cast<double>(i) / std::numbers::phi;
+        return turns - std::floor(turns);
+    };
+    std::ranges::stable_sort(order, {}, rank);
+    order.resize(count);
+    std::ranges::sort(order);
+    std::vector<Vec3> left;
+    left.reserve(count);
+    for (const std::size_t i : order) left.push_back(places[i]);
+    return left;
+}
+
+const Error too_flat{"shape", "is too flat to be filled with liquid",
+                     "make it thicker, or allow more with particle_budget"};
+
 }  // namespace
 
 Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t max_count) {
@@ -73,8 +96,26 @@ Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, doub
             step *= finer;
         }
     }
-    return Error{"shape", "is too flat to be filled with liquid",
-                 "make it thicker, or allow more with particle_budget"};
+    return too_flat;
+}
+
+Result<std::vector<Vec3>> places_of_particles(const physics::ShapeDefinition& shape, std::size_t count) {
+    const Result<FilledRegion> region = FilledRegion::of(shape);
+    if (!region.ok()) return region.error();
+    constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+    constexpr double probes = 20'000, coarser = 1.06, finer = 0.98;
+    const Vec3 size = region.value().bounds().size();
+    const Lattice probe(region.value().bounds(), std::cbrt(size.x * size.y * size.z / probes));
+    const auto inside = static_cast<double>(places_in(region.value(), probe, all).size());
+    const double volume = inside * probe.spacing.x * probe.spacing.y * probe.spacing.z;
+    if (!(volume > 0)) return too_flat;
+    // From too coarse a lattice to the first that is fine enough.
+    for (double step = coarser * std::cbrt(volume / static_cast<double>(count));; step *= finer) {
+        const Lattice lattice(region.value().bounds(), step);
+        if (lattice.size() > max_places) return too_flat;
+        const std::vector<Vec3> places = places_in(region.value(), lattice, all);
+        if (places.size() >= count) return thinned(places, count);
+    }
 }
 
 }  // namespace embody::scene

@@ -19,4 +19,8 @@ struct FluidFilling {
 /// shape has no inside, or that it is too flat.
 Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t max_count);
 
+/// Places of exactly so many particles, spread evenly in the shape, in its frame, m: of a lattice with more, some are
+/// left out.
+Result<std::vector<Vec3>> places_of_particles(const physics::ShapeDefinition& shape, std::size_t count);
+
 }  // namespace embody::scene

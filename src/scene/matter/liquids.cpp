@@ -187,6 +187,22 @@ Result<void> Liquids::set_drops(Part& part, std::span<const physics::FluidDrop> 
     return world_.set_liquid(part.fluid, part.ids, part.matter);
 }
 
+Result<void> Liquids::append(Part& part, std::span<const physics::FluidDrop> drops) {
+    Bounds all = bounds_of(*find(part.fluid));
+    for (const physics::FluidDrop& drop : drops) all.add(drop.position);
+    if (cells_of(all, world_.fluid(part.fluid)->cell_size) >= max_cells)
+        return Error{"liquid", "is too far away: one grid would have to span both",
+                     "bring them together, or let it become a liquid of its own"};
+    const Result<physics::FluidIds> own = world_.make_room(part.fluid, part.ids, 0);
+    if (!own.ok()) return own.error();
+    set_newest_ids(part, own.value());
+    const Result<physics::FluidIds> added = world_.add_drops(part.fluid, drops);
+    if (!added.ok()) return added.error();
+    part.ids.last = added.value().last;
+    part.poured += drops.size();
+    return world_.set_liquid(part.fluid, added.value(), part.matter);
+}
+
 // Removes the part from its fluid's list, and the list with its last part.
 std::unique_ptr<Liquids::Part> Liquids::take(Part& part) {
     const auto shared = find(part.fluid);

@@ -27,7 +27,7 @@ public:
         Bounds start;                       ///< where it began, m, world; it is taken to be there while it is empty
         physics::FluidIds room;             ///< the last of its ids: kept for what taps will add
         std::uint32_t used_room = 0;        ///< so many of these are used
-        std::uint64_t poured = 0;           ///< particles that taps have added
+        std::uint64_t poured = 0;           ///< particles that have been added while it ran
         std::vector<std::uint32_t> places;  ///< indices, see particles_of
         physics::LiquidMatter matter;
         double set_cell_size = 0;  ///< m, told by hand; 0: none. The fluid's may be larger
@@ -54,6 +54,8 @@ public:
     static void count_poured(Part& part, std::uint64_t count);
     /// Removes its particles and adds these, exactly there.
     Result<void> set_drops(Part& part, std::span<const physics::FluidDrop> drops);
+    /// Adds particles behind the part's own, exactly there. The error says why they cannot be one fluid with it.
+    Result<void> append(Part& part, std::span<const physics::FluidDrop> drops);
     /// Changes the matter; the cell size must be the same.
     Result<void> set_matter(Part& part, const physics::FluidDefinition& matter);
     /// Call after its particles were moved: it leaves a fluid that is too far away, or joins another one.

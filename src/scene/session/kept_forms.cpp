@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace embody::scene {
 
@@ -47,6 +48,22 @@ std::string fingerprint_of(SessionState& state, const Entity& entity) {
     return state.definitions.points.form(entity, acting.value(), false).kept_fit.fingerprint;
 }
 
+// What melted into a liquid is kept as a part of that liquid's form: it must not be there twice.
+void disable_melted(const SessionState& state, const std::map<EntityIndex, ShownEntity>& shown, Edit& edit) {
+    std::set<EntityIndex> kept;
+    for (const Change& item : edit.changes) {
+        const auto* change = std::get_if<EntityChange>(&item);
+        if (change != nullptr && change->after && change->after->kept) kept.insert(change->after->index);
+    }
+    for (const auto& [index, melted] : state.past.melted) {
+        const Entity* thing = state.document.find(index);
+        if (thing == nullptr || shown.contains(index) || !kept.contains(melted.liquid)) continue;
+        EntityChange change = change_of(*thing, *thing);
+        change.after->enabled = false;
+        edit.changes.emplace_back(std::move(change));
+    }
+}
+
 bool may_be_unfit(const EntityChange& change) {
     if (!change.before || !change.after || !change.after->kept) return false;
     const Entity &before = *change.before, &after = *change.after;
@@ -77,6 +94,7 @@ Edit edit_of_shown(SessionState& state) {
             edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose});
         }
     }
+    disable_melted(state, all, edit);
     return edit;
 }
 

@@ -59,6 +59,7 @@ void Past::clear() {
     marks.clear();
     spawned.clear();
     removed.clear();
+    melted.clear();
     fired.clear();
     breaks.clear();
     if (shown) ++jumps;

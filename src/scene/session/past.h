@@ -49,7 +49,12 @@ struct Past {
     };
     std::map<EntityIndex, Spawned> spawned;  ///< by actions, ever in this run
     std::map<EntityIndex, double> removed;   ///< by actions, and when, s
-    std::map<std::uint32_t, double> fired;   ///< actions by id, and when first, s
+    struct Melted {
+        EntityIndex liquid = 0;
+        double time = 0;  ///< s
+    };
+    std::map<EntityIndex, Melted> melted;   ///< things that became drops of a liquid, in this run
+    std::map<std::uint32_t, double> fired;  ///< actions by id, and when first, s
     struct Break {
         EntityIndex rope = 0;
         std::uint32_t segment = 0;

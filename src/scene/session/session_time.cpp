@@ -49,6 +49,7 @@ void SessionState::record_step() {
     for (const EntityIndex index : simulation->spawned())
         if (const Entity* entity = simulation->definition(index)) past.spawned[index] = {*entity, time};
     for (const EntityIndex index : simulation->despawned()) past.removed[index] = time;
+    for (const ThingMelted& melted : simulation->melted()) past.melted[melted.entity] = {melted.liquid, time};
     for (const ActionFired& fired : simulation->fired()) {
         past.fired.try_emplace(fired.id, time);
         past.marks.add({time, Mark::Kind::action, fired.sender, fired.receiver, 0, fired.name});
@@ -165,6 +166,7 @@ Result<std::vector<std::string>> SessionState::branch() {
     past.marks.cut_after(moment.time);
     std::erase_if(past.spawned, [&](const auto& entry) { return entry.second.time > moment.time; });
     std::erase_if(past.removed, std::not_fn(is_before));
+    std::erase_if(past.melted, [&](const auto& entry) { return entry.second.time > moment.time; });
     std::erase_if(past.fired, std::not_fn(is_before));
     std::erase_if(past.breaks, [&](const Past::Break& broke) { return broke.time > moment.time; });
     past.marks.add({moment.time, Mark::Kind::branch});

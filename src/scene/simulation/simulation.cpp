@@ -109,6 +109,7 @@ const physics::StepReport& Simulation::step() {
     state.spawned_by_actions = 0;
     state.despawned.clear();
     state.broke.clear();
+    state.melted.clear();
     state.actions->fired.clear();
     state.actions->problems.clear();
     state.actions->pause_requested = false;
@@ -132,6 +133,7 @@ const std::vector<ActionFired>& Simulation::fired() const { return state_->actio
 const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
 std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { return state_->world->rope_break_events(); }
 const std::vector<ThingBroke>& Simulation::broke() const { return state_->broke; }
+const std::vector<ThingMelted>& Simulation::melted() const { return state_->melted; }
 const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
 const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
 

@@ -40,6 +40,11 @@ struct ThingBroke {
     std::size_t pieces = 0;
 };
 
+/// A thing that melted in the last step: it is not in the world any more.
+struct ThingMelted {
+    EntityIndex entity = 0, liquid = 0;
+};
+
 /// Number of entities by state, of all that can move and are enabled: an entity counts once, whether it is one body, a
 /// pile of grains, a liquid, or a deformable.
 struct Activity {
@@ -85,6 +90,7 @@ public:
     /// Ropes that broke in the last step; their user_data is the entity.
     [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
     [[nodiscard]] const std::vector<ThingBroke>& broke() const;
+    [[nodiscard]] const std::vector<ThingMelted>& melted() const;
     /// A key or button (OnSignal); returns the number of actions it starts at the next step.
     std::size_t signal(const std::string& key, const std::string& button);
     /// Carries out an action at the next step, whatever sets it off, as `sender` does it; 0: an entity that the

@@ -45,6 +45,8 @@ Result<void> Simulation::State::change(EntityIndex index, const Effect& effect) 
         entity.definition.tap.open = entity.definition.drain.open = set->open;
         return {};
     }
+    if (const auto* melting = std::get_if<Melt>(&effect)) return melt(entity, *melting);
+    if (std::holds_alternative<Freeze>(effect)) return freeze(entity);
     remove_all({index});
     despawned.push_back(index);
     return {};

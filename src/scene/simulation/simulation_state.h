@@ -13,6 +13,7 @@
 #include "scene/document/hold_index.h"
 #include "scene/embody/entity_definitions.h"
 #include "scene/matter/liquids.h"
+#include "scene/matter/melting.h"
 #include "scene/matter/moving_points.h"
 #include "scene/simulation/action_runner.h"
 #include "scene/simulation/shared_shapes.h"
@@ -66,7 +67,7 @@ struct HandBall {
 
 /// State of a simulation. Entities are made and changed in simulation_entities.cpp, their connections in
 /// simulation_holds.cpp, hands in simulation_hands.cpp, taps and drains in simulation_ports.cpp, effects of actions in
-/// simulation_effects.cpp.
+/// simulation_effects.cpp, what melts and freezes in simulation_melting.cpp and simulation_freezing.cpp.
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
           std::shared_ptr<FormCache> forms)
@@ -101,6 +102,7 @@ struct Simulation::State {
     std::vector<EntityIndex> spawned, despawned;
     std::size_t spawned_by_actions = 0;  ///< of `spawned`; the others are pieces
     std::vector<ThingBroke> broke;
+    std::vector<ThingMelted> melted;
     EntityIndex next_spawned = last_document_index + 1;
     std::unique_ptr<ActionRunner> actions;
 
@@ -204,6 +206,12 @@ private:
 
     Result<void> change(EntityIndex index, const Effect& effect);
     Result<void> set_attribute(LiveEntity& entity, const SetAttribute& set);
+    Result<void> check_meltable(const LiveEntity& thing) const;
+    Result<Melting> melting(const LiveEntity& thing);
+    Result<void> melt_into(const Melting& melting, EntityIndex into);
+    Result<EntityIndex> melt_alone(const LiveEntity& thing, const Melting& melting);
+    Result<void> melt(const LiveEntity& thing, const Melt& melt);
+    Result<void> freeze(const LiveEntity& liquid);
     Result<void> add_pieces(const physics::BodyBreakEvent& event);
     [[nodiscard]] Result<EntityIndex> new_index() const;
     Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn);

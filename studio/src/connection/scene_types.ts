@@ -389,6 +389,14 @@ export type Effect =
       open?: boolean;
     }
   | {
+      type: "melt";
+      /** index of the liquid that gains its drops; 0: it becomes a liquid of its own matter (0 … 2147483647) */
+      into?: number;
+    }
+  | {
+      type: "freeze";
+    }
+  | {
       type: "pause";
     };
 

@@ -5,6 +5,7 @@ import type { AttributeEntry, NewAction } from "../connection/messages";
 import type { Action, Effect, Target, Trigger, Vector } from "../connection/scene_types";
 import { nameOf, positionOf } from "../document/scene_document";
 import { withTyped } from "../document/components";
+import { isLiquid } from "../document/ports";
 import type { Parts } from "../parts";
 import { keyName } from "../tools/keys";
 import { actionText, isCaused } from "./action_text";
@@ -31,6 +32,8 @@ const EFFECTS: readonly { type: Effect["type"]; label: string; make: (near: Box)
   { type: "remove", label: t("remove"), make: () => ({ type: "remove" }) },
   { type: "set_enabled", label: t("switch on or off"), make: () => ({ type: "set_enabled", enabled: false }) },
   { type: "set_open", label: t("open or shut a tap or drain"), make: () => ({ type: "set_open", open: true }) },
+  { type: "melt", label: t("melt a thing"), make: () => ({ type: "melt" }) },
+  { type: "freeze", label: t("freeze a liquid"), make: () => ({ type: "freeze" }) },
   { type: "pause", label: t("pause the simulation"), make: () => ({ type: "pause" }) },
 ];
 const ANY = "any";
@@ -263,7 +266,11 @@ class ActionDialog {
         rows.push(labelled(t("Open", { context: "tap" }), open.root, t("Off: shut")));
         break;
       }
+      case "melt":
+        rows.push(labelled(t("Into"), this.liquid(effect.into ?? 0, (into) => change({ into })), t("The liquid that gains its drops, as many as have its mass")));
+        break;
       case "remove":
+      case "freeze":
       case "pause":
         break;
     }
@@ -311,6 +318,15 @@ class ActionDialog {
     ];
     if (!options.some(([each]) => each === text)) options.push([text, typeof value === "object" && "name" in value ? `“${value.name}”` : typeof value === "object" && "index" in value ? this.called(value.index) : text]);
     return select(label, "", options, text, (chosen) => commit(chosen === ANY ? "any" : (JSON.parse(chosen) as Target)));
+  }
+
+  /** A liquid of the scene, or one of its own for what melts. */
+  private liquid(value: number, commit: (into: number) => void): HTMLElement {
+    const { document, entities } = this.parts;
+    const liquids = [...document.entities.values()].filter((entity) => isLiquid(entity, entities)).slice(0, MOST_OFFERED);
+    const options: [string, string][] = [["0", t("a liquid of its own")], ...liquids.map(({ index }): [string, string] => [String(index), this.called(index)])];
+    if (!options.some(([each]) => each === String(value))) options.push([String(value), this.called(value)]);
+    return select(t("Into"), "melt-into", options, String(value), (chosen) => commit(Number(chosen)));
   }
 
   private async save(): Promise<void> {

@@ -61,6 +61,10 @@ export function thenText(effect: Effect, receiver: Target | undefined, isCaused:
       return effect.enabled === false ? t("switch {{whom}} off", { whom }) : t("switch {{whom}} on", { whom });
     case "set_open":
       return effect.open === false ? t("shut tap and drain of {{whom}}", { whom }) : t("open tap and drain of {{whom}}", { whom });
+    case "melt":
+      return effect.into ? t("melt {{whom}} into {{liquid}}", { whom, liquid: called(effect.into) }) : t("melt {{whom}}", { whom });
+    case "freeze":
+      return t("freeze {{whom}}", { whom });
     case "pause":
       return t("pause the simulation");
   }
