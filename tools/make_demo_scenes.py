@@ -339,7 +339,7 @@ def melting_ice() -> dict:
     timed = [("melt the ice", 3, water + number, {"type": "melt", "into": water}) for number in range(1, 5)]
     timed += [("melt the snowman", 5, snowman, {"type": "melt"}), ("freeze the water", 9, water, {"type": "freeze"})]
     actions = [{"name": name, "trigger": {"type": "time", "time": time}, "receiver": {"index": receiver}, "effect": effect} for name, time, receiver, effect in timed]
-    return scene("Melting ice", "Ice melts into the water that it floats on, whose level stays as it is. A snowman melts too, and in the end the water freezes.", [0.5, 1.0, 0.85], [0, top + 0.03, 0], entities,
+    return scene("Melting ice", "Ice melts into the water that it floats on, whose level stays as it is. A snowman melts too, and in the end the water freezes.", [0.4, 0.92, 0.66], [0, top + 0.03, 0], entities,
                  actions=actions)
 
 
