@@ -12,7 +12,7 @@ protected:
     void begin(EntityIndex into) {
         Document document = tub();
         water_ = add_water(document, 0.08, false, 2000).index;
-        thing_ = add(document, "Ice", physics::BoxShape{{0.05, 0.05, 0.05}}, {0, 0.2, 0}).index;
+        thing_ = samples::add(document, "Ice", physics::BoxShape{{0.05, 0.05, 0.05}}, {0, 0.2, 0}).index;
         document.actions = {{.id = 1,
                              .receiver = {Target::By::index, thing_, {}},
                              .trigger = AtTime{0.5, {}},
