@@ -12,7 +12,7 @@ using namespace samples;
 
 // A thing in free flight along +X.
 Entity& add_flying(Document& document, Random& random, int run) {
-    Entity& thing = add(document, "Thing", any_shape(random, run), any_vector(random, 2));
+    Entity& thing = samples::add(document, "Thing", any_shape(random, run), any_vector(random, 2));
     thing.pose.rotation = any_rotation(random);
     thing.linear_velocity = any_vector(random, 3);
     thing.linear_velocity.x = random.between(0.5, 3);
@@ -99,7 +99,7 @@ TEST(Melting, SoftThingsKeepTheirsWithTheirDeformation) {
 Document over_water(Random& random, int run, Vec3 thing_at) {
     Document document = tub();
     add_water(document, 0.1, false, 4000);
-    Entity& thing = add(document, "Thing", any_shape(random, run), thing_at);
+    Entity& thing = samples::add(document, "Thing", any_shape(random, run), thing_at);
     thing.pose.rotation = any_rotation(random);
     thing.linear_velocity = {random.between(0.3, 0.6), random.between(-0.5, 0.5), random.between(-0.5, 0.5)};
     thing.angular_velocity = any_vector(random, 8);
