@@ -135,7 +135,7 @@ TEST(Melting, ManyThingsIntoALiquidAreItsMassToADrop) {
     add_water(document, 0.05, false, 6000);
     for (int i = 0; i < 20; ++i) {
         const Vec3 at{0.07 * (i % 5) - 0.14, 0.2 + 0.1 * (i / 10), 0.08 * (i / 5 % 2) - 0.04};
-        add(document, "Ice", physics::BoxShape{{0.02, 0.02, random.between(0.015, 0.025)}}, at);
+        samples::add(document, "Ice", physics::BoxShape{{0.02, 0.02, random.between(0.015, 0.025)}}, at);
     }
     document.actions.push_back(
         {.id = 1, .receiver = {Target::By::name, 0, "Ice"}, .trigger = AtTime{0.05, {}}, .effect = Melt{water_index}});
@@ -271,7 +271,7 @@ TEST(Melting, TellsWhatCannotMeltOrFreezeByItsField) {
         problem([](Document& all, Entity&) { all.joints.push_back({.index = 1, .entity_b = thing_index}); }, Melt{}),
         "(Thing): joints: hold it, such as joint 1");
     const auto pin_to_it = [](Document& all, Entity&) {
-        Entity& cloth = add(all, "Cloth", physics::BoxShape{{0.1, 0.001, 0.1}}, {0, 0.7, 0});
+        Entity& cloth = samples::add(all, "Cloth", physics::BoxShape{{0.1, 0.001, 0.1}}, {0, 0.7, 0});
         cloth.attributes["kind"] = to_value(attributes::PhysicalKind::cloth);
         cloth.pins = {{.position = {}, .to = thing_index}};
     };
