@@ -66,6 +66,20 @@ bool RopeClamps::holds(std::size_t node) const {
     return std::ranges::any_of(held_, [node](const Held& held) { return held.clamp.node == node; });
 }
 
+std::optional<RopeClamps::Frame> RopeClamps::frame_at(std::size_t node) const {
+    const auto held = std::ranges::find_if(held_, [node](const Held& h) { return h.clamp.node == node; });
+    return held == held_.end() ? std::nullopt : std::optional(Frame{held->axis, held->side});
+}
+
+void RopeClamps::set_fold(std::size_t node, bool is_after, Vec3 fold) {
+    for (HalfBend& bend : bends_) {
+        if (held_[bend.held].clamp.node != node || bend.segment + (is_after ? 0 : 1) != node) continue;
+        const Vec3 turn = is_after ? fold : -fold;  // of the segment against the clamp
+        bend.start += bend.fold - turn;
+        bend.fold = turn;
+    }
+}
+
 RopeClamps::Frame RopeClamps::frame_of(const Held& held, std::span<const BodyMove> body_moves) const {
     if (held.body == no_body) return {held.axis, held.side};
     const Quat turn = cayley(body_moves[held.body].turn);
@@ -179,7 +193,8 @@ double RopeClamps::angle_of(const Span& span, std::span<const Vec3> places,
 Vec3 RopeClamps::turn_of(const HalfBend& bend, std::span<const Vec3> places,
                          std::span<const BodyMove> body_moves) const {
     const Vec3 edge = places[bend.segment + 1] - places[bend.segment];
-    return direction_of(edge, lengths_[bend.segment]).displacement - frame_of(held_[bend.held], body_moves).axis;
+    return direction_of(edge, lengths_[bend.segment]).displacement - frame_of(held_[bend.held], body_moves).axis -
+           bend.fold;
 }
 
 RopeClamps::Bow RopeClamps::bow_of(const Span& span, std::span<const Vec3> places,
@@ -221,13 +236,13 @@ TwistMode RopeClamps::mode_of(const Span& span, const Bow& bow) const {
     return mode;
 }
 
-// ½ m (k + damping) m with m = t - e: by the segment's nodes and by the turn of what holds e, δe = ω × e.
+// ½ m (k + damping) m with m = t - e less the fold: by the segment's nodes and by the turn of what holds e, δe = ω × e.
 void RopeClamps::add_curvature(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
                                std::span<const BodyMove> body_moves, RopeSystem& system) const {
     const std::size_t s = bend.segment;
     const Held& held = held_[bend.held];
     const SegmentDirection direction = direction_of(places[s + 1] - places[s], lengths_[s]);
-    const Vec3 axis = frame_of(held, body_moves).axis, turn = direction.displacement - axis;
+    const Vec3 axis = frame_of(held, body_moves).axis, turn = direction.displacement - axis - bend.fold;
     const Mat3 stiffness = bend.stiffness * Mat3::identity() + bend.damping;
     const Mat3 by_turn = skew(axis), by_end = direction.by_end;
     Vec3 moved = by_end * (moves[s + 1] - moves[s]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_segment.h"
 #include "physics/deformable/rope/rope_system.h"
@@ -28,6 +30,14 @@ public:
     void begin(const Start& start);
     [[nodiscard]] bool holds_any() const { return !held_.empty(); }
     [[nodiscard]] bool holds(std::size_t node) const;
+    /// How a node's clamp lies at the substep's end, on the path of what holds it: along the rope, and a vector across.
+    struct Frame {
+        Vec3 axis, side;
+    };
+    /// Nothing where no clamp holds the node.
+    [[nodiscard]] std::optional<Frame> frame_at(std::size_t node) const;
+    /// The fold between a clamp and the segment before the node, or after it: a change of direction along the rope.
+    void set_fold(std::size_t node, bool is_after, Vec3 fold);
     [[nodiscard]] bool has_twist() const { return !spans_.empty(); }
 
     /// Adds to the system about these moves. `with_curvature`: also the sideways forces of the moments on bent rope,
@@ -57,7 +67,8 @@ private:
     struct HalfBend {
         std::size_t held = 0, segment = 0;
         double stiffness = 0;  // N m
-        Vec3 start;            // turn of the direction when the substep began
+        Vec3 start;            // turn of the direction when the substep began, beyond its fold
+        Vec3 fold;             // the turn that it has without a moment
         Mat3 damping = Mat3::zero();
     };
     struct Span {
@@ -71,9 +82,6 @@ private:
         std::uint32_t from = 0, to = 0;            // nodes
         std::uint32_t from_slot = 0, to_slot = 0;  // of the bodies
         double straight = 0, angle = 0;
-    };
-    struct Frame {
-        Vec3 axis, side;
     };
     // Directions along a span, those of its clamps first and last, and the curvature between each and the next.
     struct Bow {

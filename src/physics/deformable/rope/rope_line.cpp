@@ -20,7 +20,8 @@ constexpr double pi = 3.14159265358979323846;  // turns of Euler's load
 
 }  // namespace
 
-RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope>(definition.matter)) {
+RopeLine::RopeLine(const DeformableDefinition& definition)
+    : rope_(std::get<Rope>(definition.matter)), folds_(definition.nodes.size(), rope_.bend_yield) {
     const std::size_t count = definition.nodes.size();
     nodes_.mass.assign(count, 0);
     Vec3 center;
@@ -64,8 +65,72 @@ RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positio
     bend.is_whole = true;
     bend.stiffness = rope_.bend_rigidity / ((segments_[node - 1].length + segments_[node].length) / 2);
     bend.turn = after.displacement - before.displacement;
+    if (!node_folds_.empty()) bend.turn -= node_folds_[node];
     bend.by_node = {before.by_end, -1.0 * (before.by_end + after.by_end), after.by_end};
     return bend;
+}
+
+std::vector<RopeCorner> RopeLine::corners(std::span<const Vec3> positions) const {
+    std::vector<RopeCorner> corners;
+    const auto is_whole = [&](std::size_t s) { return s < segments_.size() && !segments_[s].is_broken; };
+    const auto displacement = [&](std::size_t s) {
+        return direction_of(positions[s + 1] - positions[s], segments_[s].length).displacement;
+    };
+    bool begins = true;
+    const auto add = [&](RopeCorner corner) {
+        corner.stiffness = rope_.bend_rigidity / corner.length;
+        corner.begins_span = begins;
+        corners.push_back(corner);
+        begins = false;
+    };
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const std::size_t fold = RopeFolds::by_node * i;
+        const bool has_before = i > 0 && is_whole(i - 1), has_after = is_whole(i);
+        if (!has_before) begins = true;
+        if (const auto clamp = clamps_.frame_at(i)) {
+            const auto node = static_cast<std::uint32_t>(i);
+            const auto [axis, side] = *clamp;
+            if (has_before)
+                add({.fold = fold + RopeFolds::before_clamp,
+                     .length = segments_[i - 1].length / 2,
+                     .before = displacement(i - 1),
+                     .after = axis,
+                     .clamp = node,
+                     .side = side});
+            if (has_after)
+                add({.fold = fold + RopeFolds::after_clamp,
+                     .length = segments_[i].length / 2,
+                     .before = axis,
+                     .after = displacement(i),
+                     .clamp = node,
+                     .side = side});
+        } else if (has_before && has_after) {
+            add({.fold = fold + RopeFolds::at_node,
+                 .length = (segments_[i - 1].length + segments_[i].length) / 2,
+                 .before = displacement(i - 1),
+                 .after = displacement(i)});
+        }
+    }
+    return corners;
+}
+
+// That corners have where the nodes are at these places.
+void RopeLine::find_folds(std::span<const Vec3> positions) {
+    const std::vector<RopeCorner> all = corners(positions);
+    const std::vector<Vec3> folds = folds_.at(all);
+    node_folds_.assign(positions.size(), {});
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::size_t node = all[k].fold / RopeFolds::by_node, kind = all[k].fold % RopeFolds::by_node;
+        if (kind == RopeFolds::at_node)
+            node_folds_[node] = folds[k];
+        else
+            clamps_.set_fold(node, kind == RopeFolds::after_clamp, folds[k]);
+    }
+}
+
+void RopeLine::set_folds(std::span<const std::array<double, 6>> states) {
+    folds_.set_state(states);
+    if (folds_.is_active()) find_folds(nodes_.position);
 }
 
 // EA times the strain; compressed beyond Euler's load π² EI / l² of a piece that long, it buckles between its nodes and
@@ -133,6 +198,11 @@ void RopeLine::begin_substep(double h) {
     start_lengths_.resize(segments_.size());
     for (std::size_t s = 0; s < segments_.size(); ++s)
         start_lengths_[s] = length(nodes_.position[s + 1] - nodes_.position[s]);
+    if (folds_.is_active()) {
+        std::vector<Vec3> foreseen(count);
+        for (std::size_t i = 0; i < count; ++i) foreseen[i] = nodes_.position[i] + moves_[i];
+        find_folds(foreseen);
+    }
     bends_.assign(count, {});
     for (std::size_t i = 1; i + 1 < count; ++i) {
         Bend& bend = bends_[i] = bend_at(i, nodes_.position);
@@ -315,6 +385,7 @@ void RopeLine::go_on_from(const RopeLine& other) {
     clamps_ = other.clamps_;
     clamps_.set(own);
     springs_.go_on_from(other.springs_);
+    folds_.go_on_from(other.folds_);
 }
 
 void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contacts,
@@ -418,6 +489,10 @@ void RopeLine::move_nodes(std::span<const Vec3> moves, double h) {
     if (is_frozen_) return;
     set_velocities(nodes_, moves, h);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves[i];
+    if (folds_.is_active()) {
+        folds_.keep(corners(nodes_.position));
+        find_folds(nodes_.position);
+    }
     break_segments();
 }
 

@@ -8,6 +8,7 @@
 #include "physics/deformable/contact/support_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_clamps.h"
+#include "physics/deformable/rope/rope_folds.h"
 #include "physics/deformable/rope/rope_system.h"
 
 namespace embody::physics::deformable {
@@ -74,6 +75,9 @@ public:
     [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
     /// Takes over broken segments, twists and contacts from another rope of as many segments.
     void go_on_from(const RopeLine& other);
+    [[nodiscard]] const RopeFolds& folds() const { return folds_; }
+    /// As RopeFolds::set_state().
+    void set_folds(std::span<const std::array<double, 6>> states);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;
     /// True once a number was non-finite: the rope stays where it last was.
@@ -82,7 +86,7 @@ public:
     [[nodiscard]] int iterations() const { return iterations_; }
 
 private:
-    // Turn of the direction at a node, with its derivatives by the three nodes.
+    // Turn of the direction at a node beyond its fold, with its derivatives by the three nodes.
     struct Bend {
         bool is_whole = false;
         double stiffness = 0;  // EI / l, N m
@@ -113,6 +117,8 @@ private:
     [[nodiscard]] Tension damped_tension_at(std::size_t segment, double length, double h) const;
     void begin_substep(double h);
     [[nodiscard]] Bend bend_at(std::size_t node, std::span<const Vec3> positions) const;
+    [[nodiscard]] std::vector<RopeCorner> corners(std::span<const Vec3> positions) const;
+    void find_folds(std::span<const Vec3> positions);
 
     Rope rope_;
     Nodes nodes_;
@@ -121,6 +127,7 @@ private:
     TouchSprings springs_;
     SupportSprings supports_;  // of the bodies that it pushes, where it is solved alone
     RopeClamps clamps_;
+    RopeFolds folds_;
     std::vector<double> tensions_;
     std::vector<Break> new_breaks_;
 
@@ -129,6 +136,7 @@ private:
     std::vector<Vec3> places_, moves_, next_moves_;
     std::vector<TouchSpring> held_;
     std::vector<Vec3> small_load_;       // N
+    std::vector<Vec3> node_folds_;       // as foreseen; none: of a rope without folds
     std::vector<Bend> bends_;            // by node, when the substep began
     std::vector<double> start_lengths_;  // of segments, then, m
     std::vector<double> pulls_;          // of segments, as the last iteration predicted them, N
