@@ -19,7 +19,7 @@ Rope steel(double yield) {
             .linear_density = 0.025,
             .axial_stiffness = 1e5,
             .bend_rigidity = 0.157,
-            .rayleigh_damping = 0.01,
+            .rayleigh_damping = 0.2,
             .bend_yield = yield};
 }
 

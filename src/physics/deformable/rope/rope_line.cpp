@@ -206,7 +206,9 @@ void RopeLine::begin_substep(double h) {
     bends_.assign(count, {});
     for (std::size_t i = 1; i + 1 < count; ++i) {
         Bend& bend = bends_[i] = bend_at(i, nodes_.position);
-        bend.damping = damping_of_growth(bend.turn, bend.stiffness * rope_.rayleigh_damping / h);
+        // Of the whole turn: a corner that is folded turns with the wire and does not grow.
+        const Vec3 whole = node_folds_.empty() ? bend.turn : bend.turn + node_folds_[i];
+        bend.damping = damping_of_growth(whole, bend.stiffness * rope_.rayleigh_damping / h);
     }
     pulls_ = tensions_;
 }
