@@ -104,7 +104,8 @@ DeformableDefinition cloth_ball(double radius, double edge, Cloth cloth) {
     DeformableDefinition sheet;
     std::map<std::array<std::int64_t, 3>, std::uint32_t> known;  // nodes by place: faces share those of their edges
     const auto node_at = [&](Vec3 place) {
-        constexpr double grid = 1e6;  // by half an edge of the icosahedron: rounding is finer, nodes are further apart
+        constexpr double grid =
+            1e6;  // cells in half an edge of the icosahedron. Test: SheetGas.ABallIsClosedAndHasItsVolume
         const auto [node, is_new] = known.try_emplace(
             {std::llround(grid * place.x), std::llround(grid * place.y), std::llround(grid * place.z)},
             static_cast<std::uint32_t>(sheet.nodes.size()));

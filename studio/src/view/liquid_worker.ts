@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Makes the surfaces of liquids outside of the page's thread: for 60,000 particles it takes longer than a frame may.
 import type { PointSet } from "../connection/frame";
+import type { LiquidMesh } from "./liquid_mesh";
 import { LiquidMesher } from "./liquid_mesher";
 
 /** Page → worker. */
@@ -10,14 +11,8 @@ export type ToLiquidWorker =
   | { kind: "mesh"; index: number; part: number }
   | { kind: "forget"; index: number };
 /** Worker → page: the mesh that was asked for. */
-export interface FromLiquidWorker {
+export interface FromLiquidWorker extends LiquidMesh {
   index: number;
-  positions: Float32Array;
-  normals: Float32Array;
-  indices: Uint32Array;
-  thickness: Float32Array;
-  volume: number;
-  area: number;
 }
 
 interface Points {
