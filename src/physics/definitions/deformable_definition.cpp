@@ -162,6 +162,7 @@ Result<void> check_matter(const DeformableDefinition& definition, const Cloth& c
                        check_number("drag_coefficient", cloth.drag_coefficient, 0, 10),
                        check_number("bend_friction", cloth.bend_friction, 0, 1e6, "1/m"),
                        check_limit("bend_yield", cloth.bend_yield), check_number("prestretch", cloth.prestretch, 1, 2),
+                       check_limit("tear_strength", cloth.tear_strength), check_limit("tear_energy", cloth.tear_energy),
                        check_gas(definition, cloth));
 }
 
@@ -181,6 +182,29 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
 }
 
 }  // namespace
+
+Result<void> tear(DeformableDefinition& definition, std::span<const TornCorner> corners) {
+    if (corners.empty()) return {};
+    if (!std::holds_alternative<Cloth>(definition.matter))
+        return Error{"torn_corners", "are of sheets alone", "leave them out"};
+    DeformableDefinition torn = definition;
+    Cloth& cloth = std::get<Cloth>(torn.matter);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto [corner, from, node] = corners[i];
+        const std::string field = field_item("torn_corners", i);
+        if (corner / 3 >= cloth.triangles.size()) return Error{field, "is of a triangle that the sheet has not"};
+        std::uint32_t& now = cloth.triangles[corner / 3][corner % 3];
+        if (now != from) return Error{field, "was not at node " + std::to_string(from)};
+        const Vec3 place = torn.nodes[now];
+        if (node == torn.nodes.size()) torn.nodes.push_back(place);
+        if (node > torn.nodes.size() || torn.nodes[node] != place)
+            return Error{field, "has a node that is neither the next new one nor at the corner's place"};
+        now = node;
+    }
+    if (!is_closed(cloth)) cloth.internal_pressure = 0;
+    definition = std::move(torn);
+    return {};
+}
 
 bool is_closed(const Cloth& cloth) { return geometry::find_topology({{}, cloth.triangles}).is_closed(); }
 

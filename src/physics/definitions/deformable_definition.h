@@ -45,6 +45,9 @@ struct Cloth {
                                    ///< their form, Pa, 0 … 1e8; 0: no gas
     double prestretch = 1;  ///< length of its threads in the form of the nodes over that without tension, 1 … 2: of
                             ///< what is modelled blown up
+    double tear_strength = std::numeric_limits<double>::infinity();  ///< tension beyond which a tear starts, N/m, > 0
+    double tear_energy = std::numeric_limits<double>::infinity();    ///< that a tear takes for its length, J/m, > 0;
+                                                                     ///< infinite: it goes on by tension, too
 };
 
 /// A line of nodes, each joined to the next: rope, cable, thread. Straight at rest.
@@ -120,6 +123,14 @@ struct DeformableDefinition {
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
 
+/// A corner of a sheet's triangle that a tear has given another node (docs/physics/tearing.md).
+struct TornCorner {
+    std::uint32_t corner = 0;  ///< 3 t + k: of triangle t its k-th
+    std::uint32_t from = 0;    ///< the node that it had
+    std::uint32_t node = 0;    ///< at the same place at rest
+    friend bool operator==(const TornCorner&, const TornCorner&) = default;
+};
+
 /// What a deformable does not recover from by itself.
 struct LastingDeformation {
     /// Of a solid's tetrahedra in their order, then of its nodes: xx, yy, xy, xz and yz of the plastic strain in the
@@ -129,6 +140,8 @@ struct LastingDeformation {
     /// Of a sheet's triangles in their order, in 1/m: the curvature that friction holds, then that of folds that stay,
     /// each as xx, yy and √2 xy in the triangle's plane with x along the warp. Empty: none.
     std::vector<std::array<double, 6>> bend;
+    /// Of a sheet, in the order in which it tore. New nodes follow those of the definition.
+    std::vector<TornCorner> torn_corners;
 };
 
 /// Whether each edge is between two triangles that run along it in opposite directions: the sheet can hold gas.
@@ -136,6 +149,10 @@ bool is_closed(const Cloth& cloth);
 
 /// What closed triangles enclose, m³: negative where their corners run clockwise seen from outside.
 double enclosed_volume(std::span<const Vec3> nodes, std::span<const std::array<std::uint32_t, 3>> triangles);
+
+/// Tears a sheet: its corners get these nodes, in this order; a node that is new begins where the corner's was. A sheet
+/// that is closed no more has no gas. The definition stays as it was where the answer is an error.
+Result<void> tear(DeformableDefinition& definition, std::span<const TornCorner> corners);
 
 /// Whether every number is finite and in range, every index points to a node, every node belongs to an element and
 /// every element has its volume, area or length; the error's `where` is the field. Bodies are checked by the world.

@@ -34,6 +34,14 @@ struct RopeBreakEvent {
     Vec3 position;              ///< of the middle of the segment, world, m
 };
 
+/// A sheet tore at the end of the last step, by one edge or several.
+struct SheetTearEvent {
+    DeformableHandle sheet;
+    std::uint64_t user_data = 0;
+    std::uint32_t new_nodes = 0;
+    Vec3 position;  ///< of the first of these, world, m
+};
+
 /// A brittle body broke at the end of the last step: the pieces are in the world in its place.
 struct BodyBreakEvent {
     BodyHandle body;  ///< is gone

@@ -140,6 +140,7 @@ double World::joint_coordinate(JointHandle joint) const {
 const StepReport& World::step() {
     step::step(*state_);
     replace_broken_bodies();
+    tear_sheets();
     return state_->report;
 }
 
@@ -158,6 +159,7 @@ void World::set_clock(double time, std::uint64_t step) {
 std::span<const ContactEvent> World::contact_events() const { return state_->events.contacts; }
 std::span<const RopeBreakEvent> World::rope_break_events() const { return state_->events.rope_breaks; }
 std::span<const BodyBreakEvent> World::body_break_events() const { return state_->events.body_breaks; }
+std::span<const SheetTearEvent> World::sheet_tear_events() const { return state_->events.sheet_tears; }
 std::span<const SleepEvent> World::sleep_events() const { return state_->events.sleep; }
 
 std::vector<ContactView> World::contacts() const {

@@ -108,7 +108,7 @@ public:
     Result<DeformableHandle> create_deformable(const DeformableDefinition& definition);
     Result<void> destroy_deformable(DeformableHandle deformable);
     [[nodiscard]] std::vector<DeformableHandle> deformables() const;
-    /// Its definition; nullptr if stale.
+    /// Its definition, of a sheet as torn as it is; nullptr if stale.
     [[nodiscard]] const DeformableDefinition* deformable(DeformableHandle deformable) const;
     /// World positions (m) and velocities (m/s) of its nodes; empty if stale. Valid until the next step or change.
     [[nodiscard]] std::span<const Vec3> node_positions(DeformableHandle deformable) const;
@@ -123,12 +123,14 @@ public:
     /// Sets the positions and velocities of all its nodes, as many as it has, and wakes it. Pinned ones stay at rest.
     Result<void> set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
                            std::span<const Vec3> velocities);
-    /// Its plastic strain and broken segments; empty if stale.
+    /// Its plastic strain, broken segments, folds and tears; empty if stale.
     [[nodiscard]] LastingDeformation lasting_deformation(DeformableHandle deformable) const;
-    /// Sets these; the nodes stay where they are. Strains beyond `max_plastic_strain` are shortened to it. Wakes it.
+    /// Sets these; the nodes stay where they are. Strains beyond `max_plastic_strain` are shortened to it. A sheet must
+    /// not have torn before. Wakes it.
     Result<void> set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting);
     /// Sets matter, pins, friction and the like for the same nodes and elements; the nodes keep their positions and
-    /// velocities, whatever the definition says of pose and velocity. Wakes it.
+    /// velocities, whatever the definition says of pose and velocity. A torn sheet stays torn: the definition has the
+    /// whole nodes and triangles, or the torn ones. Wakes it.
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
     /// Sets only the attachments, ties and a rope's clamps: costs nothing. Between clamps that stay, a rope stays
     /// twisted.
@@ -205,6 +207,7 @@ public:
     [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
     [[nodiscard]] std::span<const RopeBreakEvent> rope_break_events() const;
     [[nodiscard]] std::span<const BodyBreakEvent> body_break_events() const;
+    [[nodiscard]] std::span<const SheetTearEvent> sheet_tear_events() const;
     [[nodiscard]] std::vector<ContactView> contacts() const;
     [[nodiscard]] Conserved conserved() const;
     /// Draws what the options select (debug_draw.h) in its present state; changes nothing.
@@ -235,6 +238,7 @@ public:
 private:
     World();
     void replace_broken_bodies();
+    void tear_sheets();
     std::unique_ptr<state::WorldState> state_;
 };
 

@@ -199,6 +199,7 @@ LastingDeformation World::lasting_deformation(DeformableHandle deformable) const
     LastingDeformation lasting;
     if (record != nullptr && record->solid()) lasting.plastic_strain = record->solid()->plastic_strain();
     if (record != nullptr && record->cloth()) lasting.bend = record->cloth()->bend_memory().state();
+    if (record != nullptr) lasting.torn_corners = record->torn;
     lasting.broken_segments = broken_segments(deformable);
     return lasting;
 }
@@ -206,7 +207,7 @@ LastingDeformation World::lasting_deformation(DeformableHandle deformable) const
 Result<void> World::set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting) {
     DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
-    const auto& [strains, broken, bend] = lasting;
+    const auto& [strains, broken, bend, torn] = lasting;
     const auto* solid = std::get_if<SoftSolid>(&record->definition.matter);
     const std::size_t parts = solid != nullptr ? solid->tetrahedra.size() + record->nodes().size() : 0;
     if (!strains.empty() && strains.size() != parts)
@@ -223,6 +224,14 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
     if (!bend.empty() && bend.size() != triangles)
         return Error{"bend", "must be " + std::to_string(triangles) + ", one a triangle of a sheet"};
     if (!std::ranges::all_of(bend, is_number)) return Error{"bend", "must be finite numbers"};
+    if (!record->torn.empty() && record->torn != torn)
+        return Error{"torn_corners", "are not those that the sheet has already", "set them on a sheet that is whole"};
+    if (!torn.empty() && record->torn.empty()) {
+        Result<DeformableRecord> made = make_torn_record(*record, torn);
+        if (!made) return made.error();
+        *record = std::move(*made);
+        forget_thin_contacts(state_->deformables, deformable.index);
+    }
     if (solid != nullptr) record->solid()->set_plastic_strain(strains);
     if (record->cloth()) record->cloth()->bend_memory().set_state(bend);
     for (std::uint32_t segment = 0; segment < segments; ++segment)
@@ -234,9 +243,13 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
 Result<void> World::set_deformable(DeformableHandle deformable, const DeformableDefinition& definition) {
     DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
-    auto changed = make_record(*this, deformable, definition);
+    DeformableDefinition torn = definition;
+    if (definition.nodes.size() < record->definition.nodes.size()) {
+        if (auto as_before = tear(torn, record->torn); !as_before) return as_before;
+    }
+    auto changed = make_record(*this, deformable, torn);
     if (!changed) return changed.error();
-    if (definition.nodes.size() != record->definition.nodes.size())
+    if (torn.nodes.size() != record->definition.nodes.size())
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
     const Nodes& nodes = record->nodes();
     changed->set_motion(nodes.position, changed->solid() ? nodes.velocity : nodes.mean_velocity,
@@ -247,6 +260,7 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     changed->touched_bodies = std::move(record->touched_bodies);
     if (changed->rope() && record->rope()) changed->rope()->go_on_from(*record->rope());
     if (changed->cloth() && record->cloth()) changed->cloth()->go_on_from(*record->cloth());
+    changed->torn = record->torn;
     // Contacts with others are known by the numbers of edges and triangles.
     if (!changed->has_surface_of(*record)) forget_thin_contacts(state_->deformables, deformable.index);
     *record = std::move(*changed);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace embody::physics::state {
@@ -50,6 +51,37 @@ Result<DeformableRecord> make_deformable_record(const DeformableDefinition& defi
     }
     record.last_positions = record.nodes().position;
     return record;
+}
+
+Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::span<const TornCorner> corners) {
+    DeformableDefinition definition = record.definition;
+    if (auto torn = tear(definition, corners); !torn) return torn.error();
+    if (auto valid = validate(definition); !valid) return valid.error();
+    Result<DeformableRecord> made = make_deformable_record(definition);
+    if (!made) return made;
+
+    // Node by node; a new one is at first where the one is that its corner had.
+    std::vector<std::uint32_t> origin(definition.nodes.size());
+    std::iota(origin.begin(), origin.end(), 0);
+    for (const TornCorner& torn : corners) origin[torn.node] = origin[torn.from];
+    const Nodes& from = record.nodes();
+    Nodes& to = made->cloth()->nodes();
+    for (std::size_t i = 0; i < origin.size(); ++i) {
+        to.position[i] = from.position[origin[i]];
+        to.mean_velocity[i] = from.mean_velocity[origin[i]];
+        to.velocity[i] = from.velocity[origin[i]];
+    }
+    made->last_positions = to.position;
+    made->cloth()->go_on_from(*record.cloth());
+    made->contacts = record.contacts;
+    made->touched_bodies = record.touched_bodies;
+    made->touched_deformables = record.touched_deformables;
+    made->supports = record.supports;
+    made->surface_pushes = record.surface_pushes;
+    made->slot = record.slot;
+    made->torn = record.torn;
+    made->torn.insert(made->torn.end(), corners.begin(), corners.end());
+    return made;
 }
 
 const Nodes& DeformableRecord::nodes() const {

@@ -69,6 +69,7 @@ struct DeformableRecord {
     std::vector<Vec3> quiet_places;  ///< places of a sheet's or rope's nodes when the quiet time began
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite positions, to freeze it at
+    std::vector<TornCorner> torn;      ///< a sheet's; its definition is the torn one
 
     // The matter as that kind; null where it is of another kind.
     [[nodiscard]] SolidDeformable* solid() const { return of_kind<SolidDeformable>(); }
@@ -106,6 +107,9 @@ private:
         return found == nullptr ? nullptr : found->get();
     }
 };
+
+/// The record of the same sheet with these corners torn: its nodes stay where they are and move as they do.
+Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::span<const TornCorner> corners);
 
 /// Makes the record of a valid definition. Fails where a shape for its contacts cannot be made.
 Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition);

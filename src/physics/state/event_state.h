@@ -22,6 +22,7 @@ struct EventState {
     std::vector<ContactEvent> contacts;       // report
     std::vector<RopeBreakEvent> rope_breaks;  // deformables
     std::vector<BodyBreakEvent> body_breaks;  // face
+    std::vector<SheetTearEvent> sheet_tears;  // face
     std::vector<SleepEvent> sleep;            // wake, sleep
 };
 

@@ -125,18 +125,34 @@ void BendMemory::keep(std::span<const Vec3> position, std::span<const Vec3> norm
 double BendMemory::energy(std::span<const Vec3> position, std::span<const Vec3> normals, double stiffness) const {
     double sum = 0;
     for (std::size_t t = 0; t < kept_.size(); ++t) {
-        const BendTriangle& triangle = elements_.triangles[t];
-        Vec3 curvature;
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (triangle.hinge[k] == BendTriangle::no_hinge) continue;
-            const auto& [node, weight] = elements_.hinges[triangle.hinge[k]];
-            for (std::size_t i = 0; i < 4; ++i)
-                curvature += weight[i] * dot(position[node[i]], normals[t]) / (2 * triangle.area) * triangle.part[k];
-        }
         const auto& [friction, stays] = kept_[t];
-        sum += triangle.area * (dot(friction, friction) / (2 * stiffness) + dot(stays, stays / 2 - curvature));
+        const Vec3 curvature = curvature_at(t, position, normals[t]);
+        sum += elements_.triangles[t].area *
+               (dot(friction, friction) / (2 * stiffness) + dot(stays, stays / 2 - curvature));
     }
     return sum;
+}
+
+Vec3 BendMemory::curvature_at(std::size_t t, std::span<const Vec3> position, Vec3 normal) const {
+    const BendTriangle& triangle = elements_.triangles[t];
+    Vec3 curvature;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (triangle.hinge[k] == BendTriangle::no_hinge) continue;
+        const auto& [node, weight] = elements_.hinges[triangle.hinge[k]];
+        for (std::size_t i = 0; i < 4; ++i)
+            curvature += weight[i] * dot(position[node[i]], normal) / (2 * triangle.area) * triangle.part[k];
+    }
+    return curvature;
+}
+
+void BendMemory::go_on_from(const BendMemory& whole, std::span<const Vec3> position,
+                            std::span<const Vec3> whole_position, std::span<const Vec3> normals) {
+    if (!is_active() || whole.kept_.size() != kept_.size()) return;
+    set_state(whole.state());
+    for (std::size_t t = 0; t < kept_.size(); ++t) {
+        if (kept_[t].fold != Vec3{})
+            kept_[t].fold += curvature_at(t, position, normals[t]) - whole.curvature_at(t, whole_position, normals[t]);
+    }
 }
 
 std::vector<std::array<double, 6>> BendMemory::state() const {

@@ -36,6 +36,11 @@ public:
     /// less what folds have taken.
     [[nodiscard]] double energy(std::span<const Vec3> position, std::span<const Vec3> normals, double stiffness) const;
 
+    /// Takes over what another sheet of as many triangles keeps, at the same places. Where fewer edges of a triangle
+    /// join it to others than of the other's, its moment stays and so the fold is another one.
+    void go_on_from(const BendMemory& whole, std::span<const Vec3> position, std::span<const Vec3> whole_position,
+                    std::span<const Vec3> normals);
+
     /// As in LastingDeformation; empty where all is zero.
     [[nodiscard]] std::vector<std::array<double, 6>> state() const;
     /// One a triangle, or empty: none. What friction cannot hold is shortened to what it can.
@@ -51,6 +56,7 @@ private:
     };
     void find_folds(std::span<const Vec3> position, std::span<const Vec3> moves, std::vector<Vec3>& folds,
                     TaskPool& workers) const;
+    [[nodiscard]] Vec3 curvature_at(std::size_t triangle, std::span<const Vec3> position, Vec3 normal) const;
     [[nodiscard]] static Vec3 curvature(const BendTriangle& triangle, std::span<const Vec3> folds, Vec3 normal);
     [[nodiscard]] Kept after(const Kept& before, Vec3 from, Vec3 to, double stiffness) const;
 

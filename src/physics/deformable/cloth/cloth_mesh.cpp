@@ -16,10 +16,6 @@ namespace embody::physics::deformable {
 
 namespace {
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-Edge edge_between(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
-
 double cotangent(Vec3 a, Vec3 b) { return dot(a, b) / length(cross(a, b)); }
 
 // A fold, or a free edge.
@@ -35,9 +31,9 @@ struct Side {
     double cot_first = 0, cot_second = 0;  // of the angles at the edge's ends
 };
 
-using EdgeMap = std::map<Edge, MeshEdge>;
+using EdgeMap = std::map<SheetEdge, MeshEdge>;
 
-Side side_of(const std::vector<Vec3>& nodes, Edge edge, std::uint32_t opposite) {
+Side side_of(const std::vector<Vec3>& nodes, SheetEdge edge, std::uint32_t opposite) {
     const Vec3 a = nodes[edge.first], b = nodes[edge.second], c = nodes[opposite];
     return {opposite, cotangent(b - a, c - a), cotangent(a - b, c - b)};
 }
@@ -46,7 +42,7 @@ EdgeMap find_edges(const std::vector<Vec3>& nodes, const Cloth& cloth) {
     EdgeMap edges;
     for (const auto& triangle : cloth.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const Edge ends = edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
+            const SheetEdge ends = edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
             auto& [hinge, sides, index] = edges[ends];
             if (++sides > 2) continue;  // where three sheets meet the first two are one sheet
             const Side side = side_of(nodes, ends, triangle[k]);
@@ -76,7 +72,7 @@ std::array<Vec3, 2> axes_of(Vec3 a, Vec3 b, Vec3 c) {
     return {warp, cross(normal, warp)};
 }
 
-using Pairs = std::map<Edge, double>;  // of the upper half and the diagonal
+using Pairs = std::map<SheetEdge, double>;  // of the upper half and the diagonal
 
 void add_product(const BendHinge& a, const BendHinge& b, double factor, Pairs& pairs) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -115,6 +111,8 @@ BendTriangle bend_triangle(const std::vector<Vec3>& nodes, const std::array<std:
 }
 
 }  // namespace
+
+SheetEdge edge_between(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 std::vector<ClothTriangle> make_cloth_triangles(const std::vector<Vec3>& nodes, const Cloth& cloth) {
     std::vector<ClothTriangle> triangles;

@@ -3,12 +3,17 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "physics/definitions/deformable_definition.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
+
+/// The nodes at an edge's ends, the lower first.
+using SheetEdge = std::pair<std::uint32_t, std::uint32_t>;
+SheetEdge edge_between(std::uint32_t a, std::uint32_t b);
 
 /// A triangle of cloth as it was cut: F = Σ x_k (warp_k, weft_k) turns its plane at rest into where it is.
 struct ClothTriangle {

@@ -79,7 +79,8 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition, const BendElement
       triangles_(make_cloth_triangles(definition.nodes, cloth_)),
       bending_(make_bending_rows(bend, definition.nodes.size())),
       bend_memory_(bend, definition.nodes.size(), cloth_.bend_friction, cloth_.bend_yield),
-      gas_(definition) {
+      gas_(definition),
+      tear_(definition.nodes, cloth_, triangles_) {
     const std::size_t count = definition.nodes.size();
     nodes_.mass.assign(count, 0);
     for (const ClothTriangle& triangle : triangles_) {
@@ -478,8 +479,27 @@ std::vector<Vec3> ClothSheet::normals() const {
 
 void ClothSheet::go_on_from(const ClothSheet& other) {
     springs_.go_on_from(other.springs_);
-    const std::vector<std::array<double, 6>> kept = other.bend_memory_.state();
-    if (bend_memory_.is_active() && kept.size() == triangles_.size()) bend_memory_.set_state(kept);
+    if (other.bend_memory_.is_active())
+        bend_memory_.go_on_from(other.bend_memory_, nodes_.position, other.nodes_.position, normals());
+    if (other.triangles_.size() == triangles_.size()) air_travel_ = other.air_travel_;
+}
+
+// `prestretch` has made the stiffness one of the form of the nodes.
+std::vector<SheetStress> ClothSheet::stress() const {
+    const double stretch = cloth_.prestretch * cloth_.prestretch * cloth_.stretch_stiffness;
+    const double shear = cloth_.prestretch * cloth_.prestretch * cloth_.shear_stiffness;
+    std::vector<SheetStress> all;
+    all.reserve(triangles_.size());
+    for (const ClothTriangle& triangle : triangles_) {
+        const Images images = images_of(triangle, {}), pull = stress_of(images);
+        all.push_back({.warp = stretch * (length(images.f) - 1),
+                       .weft = stretch * (length(images.g) - 1),
+                       .shear = shear * dot(images.f, images.g),
+                       .energy = energy_of(images),
+                       .pull = {{{dot(images.f, pull.f), dot(images.f, pull.g)},
+                                 {dot(images.g, pull.f), dot(images.g, pull.g)}}}});
+    }
+    return all;
 }
 
 double ClothSheet::elastic_energy() const {

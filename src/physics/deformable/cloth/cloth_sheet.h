@@ -10,6 +10,7 @@
 #include "physics/deformable/cloth/cloth_mesh.h"
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/cloth/sheet_gas.h"
+#include "physics/deformable/cloth/sheet_tear.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
@@ -67,9 +68,12 @@ public:
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
-    /// Takes contacts over from another sheet of as many nodes, and what bending has left where its triangles are as
-    /// many, too.
+    /// Takes contacts over from another sheet whose nodes these are, and what its triangles keep where they are as
+    /// many.
     void go_on_from(const ClothSheet& other);
+    [[nodiscard]] const SheetTear& tear() const { return tear_; }
+    /// What its triangles pull with now.
+    [[nodiscard]] std::vector<SheetStress> stress() const;
     /// Gas inside.
     [[nodiscard]] const SheetGas& gas() const { return gas_; }
     /// Present energy of stretch, shear and bending, of its friction, and of gas, J.
@@ -126,6 +130,7 @@ private:
     ScalarRows bending_;  // times bend stiffness, N/m
     BendMemory bend_memory_;
     SheetGas gas_;
+    SheetTear tear_;
     ClothMatrix matrix_;
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
