@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
 ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an awning
-under a tap, beach balls, ice that melts. The others there were built by hand.
+under a tap, beach balls, ice that melts, paper that tears. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -272,6 +272,31 @@ def sheet_metal() -> dict:
     return scene("Sheet metal", "A ball falls on two tongues of steel: one springs back, the other stays bent. The difference is the Fold limit in the panel.", [1.1, 1.25, 1.5], [0, 0.6, 0], entities)
 
 
+def torn_paper() -> dict:
+    """A ball of 4 kg is thrown at a sheet of tissue paper and at one of cotton, each held at its four sides: one tears, the other catches it.
+
+    Creped tissue paper of 30 g/m2 bears 0.5 kN/m at a strain of 10 % (ISO 12625-4) and takes 1 J for a metre of tear; cotton of 200 g/m2 bears 12 kN/m (EN ISO 13934-1, 600 N for 5 cm)
+    and takes 20 J/m, twice the 10 N that tear trousers of it (ISO 13937-2)."""
+    half, height, bar = 0.4, 0.65, 0.02
+    wood = [0.5, 0.36, 0.22]
+    entities = [{**fixed("Floor", [2, 0.1, 4], [0, -0.1, 0], [0.6, 0.6, 0.62], friction_static=0.6, friction_dynamic=0.5), "finish": "concrete"}]
+    papers = {"area_density": 0.03, "thickness": 0.0001, "stretch_stiffness": 5e3, "shear_stiffness": 2e3, "bend_stiffness": 2e-5, "bend_yield": 60, "tear_strength": 500, "tear_energy": 1}
+    cottons = {"area_density": 0.2, "thickness": 0.0004, "stretch_stiffness": 1.5e4, "shear_stiffness": 2e3, "bend_stiffness": 1e-5, "tear_strength": 12000, "tear_energy": 20}
+    for name, x, color, weave in (("Tissue paper", -0.5, [0.95, 0.93, 0.86], papers), ("Cotton", 0.5, [0.55, 0.66, 0.8], cottons)):
+        for side in (-1, 1):
+            entities.append(fixed("Frame", [bar, height + half, bar], [x + side * (half + bar), height + half, -0.03], wood))
+            entities.append(fixed("Frame", [half, bar, bar], [x, height + half + side * (half - bar), -0.03 - 2 * bar], wood))
+        steps = [round(-half + 2 * half * k / 16, 6) for k in range(17)]
+        pins = [{"position": [across, side * half, 0], "radius": 0.03} for side in (-1, 1) for across in steps]
+        pins += [{"position": [side * half, across, 0], "radius": 0.03} for side in (-1, 1) for across in steps[1:-1]]
+        entities.append(box(name, [half, half, 0.0002], [x, height + half, 0], color, pins=pins, category="cloth",
+                            attributes={"kind": "cloth", "cloth_nodes": 600, "friction_static": 0.4, "friction_dynamic": 0.35, **weave}))
+        ball = sphere("Ball", 0.09, [x, height + half + 0.05, 1.2], [0.75, 0.3, 0.22], attributes={"mass": 4, "friction_static": 0.5, "friction_dynamic": 0.4, "friction_rolling": 0.025})
+        ball["linear_velocity"] = [0, 1.2, -5]
+        entities.append(ball)
+    return scene("Torn paper", "A ball is thrown at a sheet of paper and at one of cotton. Tear strength and Tear energy in the panel make the difference.", [1.5, 1.7, 2.1], [0, 0.95, -0.2], entities)
+
+
 def awning() -> dict:
     """A cloth between four posts over a tub, on which a tap pours 8 litres in 8 s: they gather in its sag and drip through."""
     half, height, tub, rim, wall = 0.4, 0.9, 0.22, 0.1, 0.02
@@ -345,7 +370,7 @@ def melting_ice() -> dict:
 
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls, melting_ice):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls, melting_ice, torn_paper):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

@@ -271,8 +271,13 @@ void add_soft_and_cloth(Rows& rows) {
     cloth.whole({"cloth_nodes", "C", "Nodes",
                  "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},
                 1000, 20, 20000);
-    const Group cloth_later = cloth.unsimulated();
-    cloth_later.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
+    cloth.number({"tear_strength", "C", "Tear strength", "Tension at which a tear starts, as strip tests give it."},
+                 "N/m", infinity, 0, infinity);
+    cloth.number(
+        {"tear_energy", "C", "Tear energy",
+         "What a metre of tear takes to go on: twice the force that tears trousers of it. Without it a tear goes "
+         "on by its tension, too."},
+        "J/m", infinity, 0, infinity);
 }
 
 void add_rope(Rows& rows) {

@@ -274,7 +274,8 @@ Result<physics::DeformableDefinition> soft_solid_from_attributes(const Attribute
 
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy) {
-    constexpr double min_yield = 1e-6;  // 1/m
+    constexpr double min_yield = 1e-6;                      // 1/m
+    constexpr double min_strength = 1e-6, min_tear = 1e-9;  // N/m, J/m
     const double area = area_of(sheet);
     const Result<double> area_density = spread(attributes, "area_density", area, "m²", "cloth");
     if (!area_density) return area_density.error();
@@ -291,6 +292,8 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
     cloth.bend_stiffness = number_or_standard(attributes, "bend_stiffness");
     cloth.bend_friction = number_or_standard(attributes, "bend_friction");
     cloth.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
+    cloth.tear_strength = std::max(number_or_standard(attributes, "tear_strength"), min_strength);
+    cloth.tear_energy = std::max(number_or_standard(attributes, "tear_energy"), min_tear);
     cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
     const double pressure = is_closed(cloth) ? number_or_standard(attributes, "internal_pressure") : 0;

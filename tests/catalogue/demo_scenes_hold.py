@@ -250,6 +250,16 @@ def sheet_metal(run: Run):
     yield from within("lowest point of the soft steel", lowest["Soft steel"], 0.2, 0.55)
 
 
+def torn_paper(run: Run):
+    # One ball has come through the paper, the other was thrown back by the cotton.
+    through, back = (run.last[index]["position"] for index in run.called("Ball"))
+    yield from within("way of the ball behind the paper", -through[2], 1, 3.9)
+    yield from within("way of the ball in front of the cotton", back[2], 0.5, 3.9)
+    for name, low, high in (("Tissue paper", 20, 400), ("Cotton", 0, 0)):
+        (index,) = run.called(name)
+        yield from within(f"nodes that {name} got by tearing", len(run.points(index)) - len(run.points(index, run.first)), low, high)
+
+
 def beach_balls(run: Run):
     # Blown up they keep their form; a balloon that a box lies on is pressed flat where it touches only.
     for name, size in (("Exercise ball", 0.64), ("Beach ball", 0.34)):
@@ -292,6 +302,7 @@ SCENES = {
     "sheet_metal": (8, True, sheet_metal),
     "stack_of_boxes": (12, True, stack),
     "tablecloth": (14, True, tablecloth),
+    "torn_paper": (4, False, torn_paper),
     "trampoline": (4, False, trampoline),
     "wrecking_ball": (5, False, wrecking_ball),
 }

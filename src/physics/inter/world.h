@@ -125,8 +125,8 @@ public:
                            std::span<const Vec3> velocities);
     /// Its plastic strain, broken segments, folds and tears; empty if stale.
     [[nodiscard]] LastingDeformation lasting_deformation(DeformableHandle deformable) const;
-    /// Sets these; the nodes stay where they are. Strains beyond `max_plastic_strain` are shortened to it. A sheet must
-    /// not have torn before. Wakes it.
+    /// Sets these; the nodes stay where they are. Strains beyond `max_plastic_strain` are shortened to it. A sheet
+    /// that has torn can only tear on. Wakes it.
     Result<void> set_lasting_deformation(DeformableHandle deformable, const LastingDeformation& lasting);
     /// Sets matter, pins, friction and the like for the same nodes and elements; the nodes keep their positions and
     /// velocities, whatever the definition says of pose and velocity. A torn sheet stays torn: the definition has the

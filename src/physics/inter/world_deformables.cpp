@@ -224,10 +224,11 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
     if (!bend.empty() && bend.size() != triangles)
         return Error{"bend", "must be " + std::to_string(triangles) + ", one a triangle of a sheet"};
     if (!std::ranges::all_of(bend, is_number)) return Error{"bend", "must be finite numbers"};
-    if (!record->torn.empty() && record->torn != torn)
-        return Error{"torn_corners", "are not those that the sheet has already", "set them on a sheet that is whole"};
-    if (!torn.empty() && record->torn.empty()) {
-        Result<DeformableRecord> made = make_torn_record(*record, torn);
+    const std::size_t before = record->torn.size();
+    if (torn.size() < before || !std::equal(record->torn.begin(), record->torn.end(), torn.begin()))
+        return Error{"torn_corners", "do not begin with those that the sheet has", "set them on a sheet that is whole"};
+    if (torn.size() > before) {
+        Result<DeformableRecord> made = make_torn_record(*record, std::span(torn).subspan(before));
         if (!made) return made.error();
         *record = std::move(*made);
         forget_thin_contacts(state_->deformables, deformable.index);

@@ -24,6 +24,7 @@ struct KeptForm {
     PackedNumbers plastic_strain;
     std::vector<std::uint32_t> broken;
     PackedNumbers bend;
+    std::vector<std::uint32_t> torn;
     double cell_size = 0;
     friend bool operator==(const KeptForm&, const KeptForm&) = default;
 };
@@ -33,6 +34,8 @@ inline constexpr std::size_t numbers_per_strain = 5;
 /// Numbers of what bending leaves that a triangle has: xx, yy and √2 xy of what friction holds, then of folds that
 /// stay.
 inline constexpr std::size_t numbers_per_bend = 6;
+/// Numbers of a corner that has torn off: corner, node before, node.
+inline constexpr std::size_t numbers_per_tear = 3;
 /// m: farthest place from the entity's origin, in each coordinate.
 inline constexpr double max_kept_distance = 1e6;
 
@@ -56,6 +59,9 @@ inline constexpr auto fields_of<KeptForm> = std::tuple{
         "of a sheet: the curvature that friction holds, xx, yy and √2 xy of each triangle, x along the warp, "
         "then that of folds that stay",
         {.unit = "1/m"}),
+    saved_when_set("torn", &KeptForm::torn,
+                   "of a sheet: where it has torn, in the order of time. Three numbers each: a corner, 3 t + k of "
+                   "triangle t, the node that it had, and the one that it has"),
     saved_when_set("cell_size", &KeptForm::cell_size,
                    "of a liquid: twice the cube root of a drop's volume; 0: no liquid", {0, 1, "m"}),
 };

@@ -61,7 +61,30 @@ std::string digits(const StateHash& hash) {
     return text;
 }
 
+std::vector<physics::TornCorner> torn_of(const KeptForm& kept) {
+    std::vector<physics::TornCorner> torn;
+    for (std::size_t i = 0; i + 2 < kept.torn.size(); i += numbers_per_tear)
+        torn.push_back({kept.torn[i], kept.torn[i + 1], kept.torn[i + 2]});
+    return torn;
+}
+
 constexpr const char* as_modelled = "take the field kept out, or keep the form anew: the thing begins as modelled";
+
+// Nodes that a sheet has got by its tears.
+Result<std::size_t> check_torn(const KeptForm& kept, const KeptFit& fit) {
+    if (kept.torn.empty()) return std::size_t{0};
+    // Any nodes at places of their own: what must be right is which belongs to which.
+    physics::DeformableDefinition sheet{.matter = physics::Cloth{.triangles = fit.triangles}};
+    for (std::size_t i = 0; i < fit.max_points; ++i) sheet.nodes.push_back({static_cast<double>(i), 0, 0});
+    const Result<void> torn = physics::tear(sheet, torn_of(kept));
+    std::vector<bool> is_used(sheet.nodes.size(), false);
+    for (const auto& triangle : std::get<physics::Cloth>(sheet.matter).triangles)
+        for (const std::uint32_t node : triangle) is_used[node] = true;
+    if (!torn.ok()) return Error{"kept.torn", torn.error().where + " " + torn.error().why, as_modelled};
+    if (std::ranges::find(is_used, false) != is_used.end())
+        return Error{"kept.torn", "leaves a node without a triangle", as_modelled};
+    return sheet.nodes.size() - fit.max_points;
+}
 
 }  // namespace
 
@@ -90,7 +113,7 @@ KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const Thin
     return {.fingerprint = digits(hash),
             .min_points = sheet.nodes.size(),
             .max_points = sheet.nodes.size(),
-            .triangles = sheet.triangles.size()};
+            .triangles = sheet.triangles};
 }
 
 Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
@@ -98,10 +121,13 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
         return Error{"kept.fingerprint",
                      "is of another form than the thing has now: its kind, geometry, scale or mesh is another one",
                      as_modelled};
+    const Result<std::size_t> new_points = check_torn(kept, fit);
+    if (!new_points.ok()) return new_points.error();
     const std::size_t points = kept.places.values.size() / 3;
-    if (points < fit.min_points || points > fit.max_points) {
-        std::string count = std::to_string(fit.max_points);
-        if (fit.min_points != fit.max_points) count = std::to_string(fit.min_points) + " … " + count;
+    const std::size_t least = fit.min_points + *new_points, most = fit.max_points + *new_points;
+    if (points < least || points > most) {
+        std::string count = std::to_string(most);
+        if (least != most) count = std::to_string(least) + " … " + count;
         return Error{"kept.places", "must be of " + count + " points, got " + std::to_string(points), as_modelled};
     }
     const std::size_t strains = kept.plastic_strain.values.size() / numbers_per_strain;
@@ -111,9 +137,9 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
             "must be of " + std::to_string(fit.strains) + " tetrahedra and nodes, got " + std::to_string(strains),
             as_modelled};
     const std::size_t bends = kept.bend.values.size() / numbers_per_bend;
-    if (bends != 0 && bends != fit.triangles)
+    if (bends != 0 && bends != fit.triangles.size())
         return Error{"kept.bend",
-                     "must be of " + std::to_string(fit.triangles) + " triangles, got " + std::to_string(bends),
+                     "must be of " + std::to_string(fit.triangles.size()) + " triangles, got " + std::to_string(bends),
                      as_modelled};
     if (!kept.broken.empty() && kept.broken.back() >= fit.segments)
         return Error{"kept.broken", "has a segment that the thing has not, which has " + std::to_string(fit.segments),
@@ -151,7 +177,14 @@ physics::LastingDeformation lasting_of(const KeptForm& kept) {
     lasting.plastic_strain = unpacked<numbers_per_strain>(kept.plastic_strain);
     lasting.broken_segments = kept.broken;
     lasting.bend = unpacked<numbers_per_bend>(kept.bend);
+    lasting.torn_corners = torn_of(kept);
     return lasting;
+}
+
+std::vector<std::uint32_t> packed(const std::vector<physics::TornCorner>& corners) {
+    std::vector<std::uint32_t> numbers;
+    for (const auto& [corner, from, node] : corners) numbers.insert(numbers.end(), {corner, from, node});
+    return numbers;
 }
 
 PackedNumbers packed(const std::vector<Vec3>& places) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "foundation/result.h"
 #include "scene/document/kept_form.h"
@@ -14,9 +16,9 @@ namespace embody::scene {
 struct KeptFit {
     std::string fingerprint;  ///< hash of what the points are made from, 16 hexadecimal digits; empty: one body
     std::size_t min_points = 1, max_points = 0;
-    std::size_t strains = 0;    ///< tetrahedra and nodes of a soft solid; 0: another matter
-    std::size_t segments = 0;   ///< of a rope
-    std::size_t triangles = 0;  ///< of a sheet
+    std::size_t strains = 0;                              ///< tetrahedra and nodes of a soft solid; 0: another matter
+    std::size_t segments = 0;                             ///< of a rope
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of a sheet
     bool is_liquid = false;
 };
 
@@ -33,6 +35,7 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit);
 std::vector<Vec3> places_of(const KeptForm& kept);  ///< in the entity's frame, m
 physics::LastingDeformation lasting_of(const KeptForm& kept);
 PackedNumbers packed(const std::vector<Vec3>& places);
+std::vector<std::uint32_t> packed(const std::vector<physics::TornCorner>& corners);
 template <std::size_t n>
 PackedNumbers packed(const std::vector<std::array<double, n>>& rows) {
     PackedNumbers numbers;

@@ -27,7 +27,7 @@ class ShownPoints {
 public:
     virtual ~ShownPoints() = default;
     /// Positions, world, m: always in the same order and of the same number, except for drops of liquid that are lost
-    /// or come last.
+    /// or come last, and the nodes that a sheet gets where it tears, which come last.
     virtual void read(std::vector<Vec3>& positions) const = 0;
     /// Radius of the ball that is drawn at each point, m; 0: the points deform the thing's own drawn form.
     [[nodiscard]] virtual double radius() const = 0;

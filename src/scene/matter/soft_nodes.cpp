@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "math/mat3.h"
@@ -124,6 +125,42 @@ void SoftNodes::read(std::vector<Vec3>& positions) const {
     positions.assign(nodes.begin(), nodes.end());
 }
 
+void SoftNodes::read_velocities(std::vector<Vec3>& velocities) const {
+    const auto nodes = world_.node_velocities(handle_);
+    velocities.assign(nodes.begin(), nodes.end());
+}
+
+const DeformableSurface& SoftNodes::surface() const {
+    if (surface_points_ != membership()) {
+        surface_ = DeformableSurface(definition());
+        surface_points_ = membership();
+    }
+    return surface_;
+}
+
+std::vector<physics::TornCorner> SoftNodes::torn_corners(std::size_t points) const {
+    std::vector<physics::TornCorner> torn = lasting_deformation().torn_corners;
+    std::erase_if(torn, [points](const physics::TornCorner& corner) { return corner.node >= points; });
+    return torn;
+}
+
+DeformableDefinition SoftNodes::definition_of(std::size_t points) const {
+    DeformableDefinition whole = definition();
+    auto* cloth = std::get_if<physics::Cloth>(&whole.matter);
+    if (cloth == nullptr || points >= whole.nodes.size()) return whole;
+    for (const physics::TornCorner& torn : lasting_deformation().torn_corners | std::views::reverse) {
+        if (torn.node >= points) cloth->triangles[torn.corner / 3][torn.corner % 3] = torn.from;
+    }
+    whole.nodes.resize(points);
+    return whole;
+}
+
+Result<void> SoftNodes::tear(const std::vector<physics::TornCorner>& corners) {
+    physics::LastingDeformation lasting = lasting_deformation();
+    lasting.torn_corners = corners;
+    return world_.set_lasting_deformation(handle_, lasting);
+}
+
 physics::SleepState SoftNodes::state() const {
     return world_.is_asleep(handle_) ? physics::SleepState::asleep : physics::SleepState::active;
 }
@@ -139,7 +176,7 @@ std::optional<double> SoftNodes::drop_distance(double max_distance) const {
     const auto positions = world_.node_positions(handle_);
     const double clearance = definition().contact_radius;
     std::optional<double> min_distance;
-    for (const std::uint32_t node : surface_.nodes()) {
+    for (const std::uint32_t node : surface().nodes()) {
         const auto hit = world_.cast_ray(positions[node], {0, -1, 0}, max_distance + clearance);
         if (hit && (!min_distance || hit->distance < *min_distance)) min_distance = hit->distance;
     }
@@ -150,7 +187,7 @@ std::optional<double> SoftNodes::drop_distance(double max_distance) const {
 std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, double max_distance) const {
     const Ray ray{origin, direction, max_distance};
     const auto positions = world_.node_positions(handle_);
-    if (surface_.has_faces()) return surface_.meet(positions, ray);
+    if (surface().has_faces()) return surface().meet(positions, ray);
     return meet_rope(positions, definition().contact_radius, world_.broken_segments(handle_), ray);
 }
 
@@ -188,14 +225,14 @@ BodyHandle SoftNodes::hold(Vec3 position) {
     const auto positions = world_.node_positions(handle_);
     const Vec3 size = bounds().size();
     double nearest = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t node : surface_.nodes()) nearest = std::min(nearest, length(positions[node] - position));
+    for (const std::uint32_t node : surface().nodes()) nearest = std::min(nearest, length(positions[node] - position));
     const bool is_solid = std::holds_alternative<physics::SoftSolid>(definition().matter);
     const double reach = nearest + (is_solid ? hand_fraction : pinch_fraction) * std::max({size.x, size.y, size.z});
 
     std::vector<std::uint32_t> free;
     Hand* other = nullptr;
     const auto& pinned = definition().pinned;
-    for (const std::uint32_t node : surface_.nodes()) {
+    for (const std::uint32_t node : surface().nodes()) {
         if (length(positions[node] - position) > reach || std::ranges::find(pinned, node) != pinned.end()) continue;
         if (Hand* holder = hand_at(node))
             other = holder;

@@ -29,8 +29,16 @@ public:
 
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
+    [[nodiscard]] std::uint64_t membership() const override { return world_.node_positions(handle_).size(); }
+    void read_velocities(std::vector<Vec3>& velocities) const override;
     /// The mesh that deforms the drawn form, at rest.
     [[nodiscard]] const physics::DeformableDefinition& definition() const { return *world_.deformable(handle_); }
+    /// The same when it had so many points: a sheet that tears gets more.
+    [[nodiscard]] physics::DeformableDefinition definition_of(std::size_t points) const;
+    /// What had torn of a sheet when it had so many points.
+    [[nodiscard]] std::vector<physics::TornCorner> torn_corners(std::size_t points) const;
+    /// Tears it as that says, where it is. What it has torn already comes first.
+    Result<void> tear(const std::vector<physics::TornCorner>& corners);
     /// Handle for ties to it.
     [[nodiscard]] physics::DeformableHandle handle() const { return handle_; }
     /// Broken segments of a rope: segment k is between the points k and k + 1.
@@ -73,7 +81,9 @@ public:
 
 private:
     SoftNodes(physics::World& world, physics::DeformableHandle handle, DeformableSurface surface)
-        : world_(world), handle_(handle), surface_(std::move(surface)) {}
+        : world_(world), handle_(handle), surface_(std::move(surface)), surface_points_(membership()) {}
+    // Of the present mesh.
+    [[nodiscard]] const DeformableSurface& surface() const;
     /// A body that holds nodes in a hand.
     struct Hand {
         physics::BodyHandle body;
@@ -89,7 +99,8 @@ private:
 
     physics::World& world_;
     physics::DeformableHandle handle_;
-    DeformableSurface surface_;
+    mutable DeformableSurface surface_;
+    mutable std::uint64_t surface_points_;  // that it is made of
     Holds holds_;
     std::vector<Hand> hands_;
     bool has_hung_ = false;

@@ -14,7 +14,7 @@ namespace embody::scene {
 
 /// Something that happened in a run, for the timeline.
 struct Mark {
-    enum class Kind : std::uint8_t { contact, action, rope, hand, branch };
+    enum class Kind : std::uint8_t { contact, action, rope, tear, hand, branch };
     double time = 0;  ///< simulated, s
     Kind kind = Kind::contact;
     EntityIndex a = 0, b = 0;  ///< what met, or sender and receiver; 0: none

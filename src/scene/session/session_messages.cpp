@@ -98,6 +98,16 @@ void SessionState::tell_step() {
             tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
+    for (const physics::SheetTearEvent& tore : simulation->sheet_tears()) {
+        const auto index = static_cast<EntityIndex>(tore.user_data);
+        const std::string who = name_of(index);
+        tell({{"event", "sheet_tore"},
+              {"index", index},
+              {"nodes", tore.new_nodes},
+              {"position", vector_to_json(tore.position)}});
+        if (told_problems.insert(who + " tore").second) tell_message("info", who + " tore.");
+    }
+
     // Pieces have the name of the thing, and may break again: one message for each thing of the document, and one for
     // all others of a name.
     for (const ThingBroke& broke : simulation->broke())

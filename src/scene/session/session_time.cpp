@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/file/scene_file.h"
+#include "scene/matter/soft_nodes.h"
 #include "scene/session/session_state.h"
 
 namespace embody::scene {
@@ -59,6 +60,8 @@ void SessionState::record_step() {
         past.breaks.push_back({rope, broke.segment, time});
         past.marks.add({time, Mark::Kind::rope, rope});
     }
+    for (const physics::SheetTearEvent& tore : simulation->sheet_tears())
+        past.marks.add({time, Mark::Kind::tear, static_cast<EntityIndex>(tore.user_data)});
     const auto is_marked = [](const physics::ContactEvent& event) {
         return event.user_data_a != event.user_data_b && event.approach_speed >= marked_speed;
     };
@@ -142,6 +145,11 @@ Result<std::vector<std::string>> SessionState::branch() {
         if (is_before(entry)) done.removed.insert(entry.first);
     for (const auto& entry : past.fired)
         if (is_before(entry)) done.fired.insert(entry.first);
+
+    for (const EntityMoment& was : moment.entities) {
+        const SoftNodes* soft = as_soft(simulation->points(was.motion.entity));
+        if (soft != nullptr && was.points) done.torn[was.motion.entity] = soft->torn_corners(was.points->count());
+    }
 
     Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms, MissingModels::wait);
     if (!made.ok()) return made.error();

@@ -32,6 +32,7 @@ public:
         : from_(std::move(from)), to_(std::move(to)), part_(part), radius_(radius), is_liquid_(is_liquid) {}
 
     void read(std::vector<Vec3>& positions) const override;
+    [[nodiscard]] std::size_t count() const;
     [[nodiscard]] double radius() const override { return radius_; }
     [[nodiscard]] bool is_liquid() const override { return is_liquid_; }
 

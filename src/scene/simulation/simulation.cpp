@@ -131,6 +131,7 @@ const physics::StepReport& Simulation::step() {
 bool Simulation::pause_requested() const { return state_->actions->pause_requested; }
 const std::vector<ActionFired>& Simulation::fired() const { return state_->actions->fired; }
 const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
+std::span<const physics::SheetTearEvent> Simulation::sheet_tears() const { return state_->world->sheet_tear_events(); }
 std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { return state_->world->rope_break_events(); }
 const std::vector<ThingBroke>& Simulation::broke() const { return state_->broke; }
 const std::vector<ThingMelted>& Simulation::melted() const { return state_->melted; }

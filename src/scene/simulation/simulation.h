@@ -89,6 +89,7 @@ public:
     [[nodiscard]] const std::vector<ActionFired>& fired() const;
     /// Ropes that broke in the last step; their user_data is the entity.
     [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
+    [[nodiscard]] std::span<const physics::SheetTearEvent> sheet_tears() const;
     [[nodiscard]] const std::vector<ThingBroke>& broke() const;
     [[nodiscard]] const std::vector<ThingMelted>& melted() const;
     /// A key or button (OnSignal); returns the number of actions it starts at the next step.
@@ -196,6 +197,7 @@ public:
         std::map<EntityIndex, Entity> spawned;
         std::set<EntityIndex> removed;
         std::set<std::uint32_t> fired;  ///< ids of actions
+        std::map<EntityIndex, std::vector<physics::TornCorner>> torn;
     };
     /// Puts a world that has just been made as it was at a recorded moment, with what actions had added and without
     /// what they had removed by then. What cannot be restored: docs/time.md. The place for World::restore() once there

@@ -29,16 +29,17 @@ SharedOptional<KeptForm> form_of(const LiveEntity& entity, std::vector<Vec3> pos
     KeptForm form{.fingerprint = entity.form.kept_fit.fingerprint,
                   .plastic_strain = packed(lasting.plastic_strain),
                   .broken = lasting.broken_segments,
-                  .bend = packed(lasting.bend)};
+                  .bend = packed(lasting.bend),
+                  .torn = packed(lasting.torn_corners)};
     if (const FluidBody* liquid = as_liquid(entity.points.get())) form.cell_size = liquid->cell_size();
 
     const SharedOptional<KeptForm>& before = entity.definition.kept;
     if (before && before->plastic_strain == form.plastic_strain && before->broken == form.broken &&
-        before->bend == form.bend && are_same_places(places_of(*before), positions))
+        before->bend == form.bend && before->torn == form.torn && are_same_places(places_of(*before), positions))
         return before;
     const SoftNodes* soft = as_soft(entity.points.get());
     if (soft != nullptr && lasting.plastic_strain.empty() && lasting.broken_segments.empty() && lasting.bend.empty() &&
-        are_same_places(soft->definition().nodes, positions))
+        lasting.torn_corners.empty() && are_same_places(soft->definition().nodes, positions))
         return {};
     form.places = packed(positions);
     return form;
@@ -63,7 +64,10 @@ SharedOptional<KeptForm> Simulation::kept_form(const EntityMoment& was, std::vec
     std::vector<Vec3> positions;
     was.points->read(positions);
     if (positions.empty() && !keeps_nothing(*entity)) return {};
-    return form_of(*entity, std::move(positions), was.motion.pose, {{}, std::move(broken), {}});
+    physics::LastingDeformation lasting{.broken_segments = std::move(broken)};
+    if (const SoftNodes* soft = as_soft(entity->points.get()))
+        lasting.torn_corners = soft->torn_corners(positions.size());
+    return form_of(*entity, std::move(positions), was.motion.pose, lasting);
 }
 
 }  // namespace embody::scene

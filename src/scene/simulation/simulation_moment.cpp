@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "scene/matter/soft_nodes.h"
 #include "scene/simulation/simulation_state.h"
 
 namespace embody::scene {
@@ -91,6 +92,11 @@ Result<void> Simulation::restore_moment(const Moment& moment, const ActionsDone&
         const auto was = were.find(index);
         if (!entity.points || was == were.end()) continue;
         entity.frame = was->second->motion.pose;
+        SoftNodes* soft = as_soft(entity.points.get());
+        if (soft != nullptr && done.torn.contains(index)) {
+            if (Result<void> torn = soft->tear(done.torn.at(index)); !torn.ok())
+                return of_entity(entity.definition, torn.error());
+        }
         // What was one body then, and is points now, goes there as a whole.
         Result<void> put = was->second->points ? put_points(*entity.points, *was->second, moment.interval)
                                                : state.place(entity, entity.frame);

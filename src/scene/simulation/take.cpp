@@ -30,6 +30,8 @@ RecordedPoints::Places led_on(const RecordedPoints::Places& points, const Record
 
 }  // namespace
 
+std::size_t RecordedPoints::count() const { return from_->size() / 3; }
+
 void RecordedPoints::read(std::vector<Vec3>& positions) const {
     positions.clear();
     positions.reserve(from_->size() / 3);

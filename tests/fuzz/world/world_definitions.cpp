@@ -196,15 +196,17 @@ void change_matter(ByteReader& bytes, SoftSolid& solid) {
 }
 
 void change_matter(ByteReader& bytes, Cloth& cloth) {
-    const std::array<std::pair<double*, std::array<double, 2>>, 9> fields{{{&cloth.area_density, {0.01, 5}},
-                                                                           {&cloth.thickness, {1e-6, 0.1}},
-                                                                           {&cloth.stretch_stiffness, {1, 1e5}},
-                                                                           {&cloth.shear_stiffness, {1, 1e4}},
-                                                                           {&cloth.bend_stiffness, {1e-6, 1}},
-                                                                           {&cloth.bend_friction, {0, 1e3}},
-                                                                           {&cloth.bend_yield, {1, 1e3}},
-                                                                           {&cloth.rayleigh_damping, {0, 1}},
-                                                                           {&cloth.drag_coefficient, {0, 10}}}};
+    const std::array<std::pair<double*, std::array<double, 2>>, 11> fields{{{&cloth.area_density, {0.01, 5}},
+                                                                            {&cloth.thickness, {1e-6, 0.1}},
+                                                                            {&cloth.stretch_stiffness, {1, 1e5}},
+                                                                            {&cloth.shear_stiffness, {1, 1e4}},
+                                                                            {&cloth.bend_stiffness, {1e-6, 1}},
+                                                                            {&cloth.bend_friction, {0, 1e3}},
+                                                                            {&cloth.bend_yield, {1, 1e3}},
+                                                                            {&cloth.tear_strength, {1, 1e4}},
+                                                                            {&cloth.tear_energy, {1e-3, 10}},
+                                                                            {&cloth.rayleigh_damping, {0, 1}},
+                                                                            {&cloth.drag_coefficient, {0, 10}}}};
     const auto& [field, range] = fields[bytes.below(fields.size())];
     *field = bytes.number(range[0], range[1]);
     if (bytes.is_one_of(32)) cloth.triangles[0][0] = bytes.byte();

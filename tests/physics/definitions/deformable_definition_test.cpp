@@ -87,6 +87,8 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
                                      {"slack", &Rope::slack, 0, 10}});
     check_limit<SoftSolid>(good_solid(), "yield_stress", &SoftSolid::yield_stress);
     check_limit<Cloth>(good_sheet(), "bend_yield", &Cloth::bend_yield);
+    check_limit<Cloth>(good_sheet(), "tear_strength", &Cloth::tear_strength);
+    check_limit<Cloth>(good_sheet(), "tear_energy", &Cloth::tear_energy);
     check_limit<Rope>(good_rope(), "break_tension", &Rope::break_tension);
 }
 

@@ -49,8 +49,9 @@ SheetTear::SheetTear(const std::vector<Vec3>& rest, const Cloth& cloth, std::spa
 
 SheetTear::Tip SheetTear::tip_at(std::uint32_t node, const NodeFan& fan) const {
     const std::vector<std::uint32_t>& spokes = fan.spokes;
-    Tip tip{node, {spokes.begin() + 1, spokes.end() - 1}, {node, spokes.front(), spokes.back()}, {}};
-    for (const std::uint32_t near : tip.ahead) {
+    Tip tip{node, {node, spokes.front(), spokes.back()}, {}};
+    for (std::size_t k = 1; k + 1 < spokes.size(); ++k) {
+        const std::uint32_t near = spokes[k];
         const std::vector<NodeFan> fans = fans_.around(near);
         if (fans.size() == 1 && fans[0].is_closed()) tip.around.push_back(near);  // a hem stays where it is
     }
@@ -151,16 +152,36 @@ SheetTear::Start SheetTear::find_start(std::span<const ClothTriangle> triangles,
     return worst;
 }
 
+// Cuts so many edges that lie nearest to the direction, up to a hem.
+void SheetTear::run_on(std::uint32_t tip, Vec3 direction, double edges, std::vector<SheetEdge>& cut) const {
+    for (double left = edges; left >= 1; --left) {
+        const std::vector<NodeFan> fans = fans_.around(tip);
+        if (fans.size() != 1) return;
+        double most = 0;
+        std::uint32_t next = tip;
+        const std::vector<std::uint32_t>& spokes = fans[0].spokes;
+        const bool is_first = left == edges;
+        if (!is_first && !fans[0].is_closed()) return;
+        for (std::size_t k = is_first ? 1 : 0; k + 1 < spokes.size(); ++k) {
+            const double along = dot(direction, normalized(rest_[spokes[k]] - rest_[tip]));
+            if (along > most) {
+                most = along;
+                next = spokes[k];
+            }
+        }
+        if (next == tip) return;
+        cut.push_back(edge_between(tip, next));
+        tip = next;
+    }
+}
+
 std::vector<TornCorner> SheetTear::find(std::span<const ClothTriangle> triangles, std::span<const SheetStress> stress,
                                         std::span<const std::uint8_t> held) const {
     std::vector<SheetEdge> cut;
     for (const Tip& tip : tips_) {
         if (held[tip.node] != 0) continue;
         const Vec3 release = release_at(tip, triangles, stress, held);
-        const auto along = [&](std::uint32_t node) { return dot(release, normalized(rest_[node] - rest_[tip.node])); };
-        const auto best = std::ranges::max_element(tip.ahead, {}, along);
-        if (best != tip.ahead.end() && along(*best) > 0 && length(release) >= energy_)
-            cut.push_back(edge_between(tip.node, *best));
+        if (length(release) >= energy_) run_on(tip.node, normalized(release), length(release) / energy_, cut);
     }
     if (!std::isinf(strength_)) {
         const Start worst = find_start(triangles, stress, held);

@@ -37,7 +37,6 @@ public:
 private:
     struct Tip {
         std::uint32_t node = 0;
-        std::vector<std::uint32_t> ahead;      // nodes that edges lead to from the tip, but those of the slit
         std::vector<std::uint32_t> around;     // nodes that are shifted with the tip, and the tip
         std::vector<std::uint32_t> triangles;  // at these
     };
@@ -48,6 +47,7 @@ private:
     [[nodiscard]] Tip tip_at(std::uint32_t node, const NodeFan& fan) const;
     [[nodiscard]] Vec3 release_at(const Tip& tip, std::span<const ClothTriangle> triangles,
                                   std::span<const SheetStress> stress, std::span<const std::uint8_t> held) const;
+    void run_on(std::uint32_t tip, Vec3 direction, double edges, std::vector<SheetEdge>& cut) const;
     [[nodiscard]] Start start_at(std::uint32_t node, std::span<const ClothTriangle> triangles,
                                  std::span<const SheetStress> stress) const;
     [[nodiscard]] Start find_start(std::span<const ClothTriangle> triangles, std::span<const SheetStress> stress,

@@ -221,7 +221,14 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     const SoftNodes* soft = as_soft(state.simulation->points(index));
     if (!soft) return json{{"mesh", nullptr}};
-    const physics::DeformableDefinition& form = soft->definition();
+    // A sheet that tore later has fewer nodes at the moment that is shown.
+    std::size_t points = soft->definition().nodes.size();
+    if (state.past.shown) {
+        const auto was = std::ranges::find(state.past.shown->entities, index,
+                                           [](const EntityMoment& each) { return each.motion.entity; });
+        if (was != state.past.shown->entities.end() && was->points) points = was->points->count();
+    }
+    const physics::DeformableDefinition form = soft->definition_of(points);
     json mesh = {{"nodes", json::array()}};
     for (const Vec3 node : form.nodes)
         for (const double number : {node.x, node.y, node.z}) mesh["nodes"].push_back(number);

@@ -60,6 +60,8 @@ const char* kind_name(Mark::Kind kind) {
             return "action";
         case Mark::Kind::rope:
             return "rope_broke";
+        case Mark::Kind::tear:
+            return "sheet_tore";
         case Mark::Kind::hand:
             return "hand";
         case Mark::Kind::branch:
