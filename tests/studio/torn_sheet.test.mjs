@@ -90,6 +90,8 @@ function lengths({ index, position }) {
   });
 }
 
+const near = (value, expected, tolerance) => assert.ok(Math.abs(value - expected) < tolerance, `${value} instead of ${expected}`);
+
 describe("the drawn form of a torn sheet", () => {
   it("comes apart along a tear, without a triangle across it and without a gap", () => {
     for (let seed = 1; seed <= RANDOM_SHEETS; ++seed) {
@@ -153,6 +155,20 @@ describe("the drawn form of a torn sheet", () => {
     assert.ok(Math.abs(area(apart) - 2.016) < 0.001, `${area(apart)}`);
   });
 
+  it("is the same whether the sheet was drawn before or not", () => {
+    const mesh = sheet(2);
+    let skin = skinOf(mesh);
+    for (const next of [tear(mesh, 3), tear(mesh, CELLS), mesh]) {
+      skin.follow(opened(next, (x, y, z) => 0.1 + 0.1 * z));
+      skin = new SoftSkin(new SoftForm(next, 1), flat(), "high", skin);
+      const places = opened(next, (x, y, z) => 0.1 * z);
+      assert.deepEqual(drawn(skin, places), drawn(skinOf(next), places));
+    }
+    // Not what another form was.
+    const small = plain(new PlaneGeometry(0.5, 1), new Matrix4().makeRotationX(-Math.PI / 2));
+    near(area(drawn(new SoftSkin(new SoftForm(mesh, 1), small, "high", skin), Float32Array.from(mesh.nodes))), 0.5, 1e-6);
+  });
+
   it("is as ever where nothing is torn", () => {
     const mesh = sheet(1);
     const skin = skinOf(mesh);
@@ -202,7 +218,6 @@ const whole = sheet(1);
 const torn = tear(whole, CELLS);
 const halfTorn = tear(whole, 6);
 const added = (mesh) => (mesh.nodes.length - whole.nodes.length) / 3;
-const near = (value, expected, tolerance) => assert.ok(Math.abs(value - expected) < tolerance, `${value} instead of ${expected}`);
 
 async function pageWith(mesh) {
   const page = new Page();

@@ -130,7 +130,7 @@ export class SoftBodies {
     nodes.least = whole;
     nodes.most = Math.max(nodes.most, form.nodes.length);
     nodes.local = new Float32Array(form.nodes.length);
-    nodes.skin = new SoftSkin(form, plain, quality);
+    nodes.skin = new SoftSkin(form, plain, quality, nodes.skin);
     this.moving.add(index);
     return nodes.skin;
   }

@@ -78,6 +78,14 @@ export class SoftForm {
     return this.elements.length / this.corners;
   }
 
+  /** Whether the elements of the other are at the same places at rest, whatever their nodes are. */
+  isSameAtRest(other: SoftForm): boolean {
+    if (this.corners !== other.corners || this.count !== other.count) return false;
+    const isAt = (i: number, k: number) => this.nodes[3 * this.elements[i]! + k] === other.nodes[3 * other.elements[i]! + k];
+    for (let i = 0; i < this.elements.length; ++i) if (!isAt(i, 0) || !isAt(i, 1) || !isAt(i, 2)) return false;
+    return true;
+  }
+
   /** Barycentric weights of the nodes at a point: outside of the element some are negative. */
   weightsAt(t: number, x: number, y: number, z: number, weights: Float32Array): void {
     const at = 3 * this.elements[this.corners * t]!;
@@ -200,8 +208,8 @@ class CarriedPart {
     readonly geometry: BufferGeometry,
     form: SoftForm,
     finder: ElementFinder,
-    /** For each vertex the element that carries it; null: the nearest one. */
-    elements: readonly number[] | null,
+    /** For each vertex the element that carries it. */
+    elements: ArrayLike<number>,
   ) {
     this.position = geometry.getAttribute("position") as BufferAttribute;
     this.normal = geometry.getAttribute("normal") as BufferAttribute;
@@ -218,8 +226,8 @@ class CarriedPart {
     const anchor = new Vector3();
     for (let v = 0; v < count; ++v) {
       anchor.fromArray(this.offsets, 3 * v);
-      const t = elements?.[v] ?? finder.find(anchor.x, anchor.y, anchor.z, weights);
-      if (elements) finder.weigh(t, anchor.x, anchor.y, anchor.z, weights);
+      const t = elements[v]!;
+      finder.weigh(t, anchor.x, anchor.y, anchor.z, weights);
       pieces[v] = pieceOf[t]!;
       anchor.set(0, 0, 0);
       for (let k = 0; k < corners; ++k) {
@@ -348,33 +356,79 @@ function longestEdge(index: ArrayLike<number>, position: ArrayLike<number>): num
   return Math.sqrt(most);
 }
 
+/** Of each part of a drawable the refined geometry at rest, and for each of its vertices the nearest element: the same however far a sheet is torn. */
+class RestForm {
+  readonly finder: ElementFinder;
+  readonly parts: { refined: Refined; elements: Uint32Array }[];
+
+  constructor(
+    private readonly form: SoftForm,
+    private readonly plain: readonly DrawablePart[],
+    private readonly longest: number,
+  ) {
+    this.finder = new ElementFinder(form);
+    this.parts = plain.map((part) => {
+      const refined = refine(part.geometry, part.matrix, longest);
+      return { refined, elements: nearestElements(refined.geometry, this.finder) };
+    });
+  }
+
+  /** Whether it is that of these, too. */
+  fits(form: SoftForm, plain: readonly DrawablePart[], longest: number): boolean {
+    return longest === this.longest && form.isSameAtRest(this.form) && plain.length === this.plain.length && plain.every((part, at) => hasSameForm(part, this.plain[at]!));
+  }
+}
+
+function nearestElements(geometry: BufferGeometry, finder: ElementFinder): Uint32Array {
+  const at = geometry.getAttribute("position").array;
+  const weights = new Float32Array(4);
+  return Uint32Array.from({ length: at.length / 3 }, (_, v) => finder.find(at[3 * v]!, at[3 * v + 1]!, at[3 * v + 2]!, weights));
+}
+
+function hasSameForm(a: DrawablePart, b: DrawablePart): boolean {
+  const arrays = ({ geometry }: DrawablePart) => [geometry.getAttribute("position").array, geometry.index?.array ?? []];
+  const [ours, theirs] = [arrays(a), arrays(b)];
+  return a.matrix.equals(b.matrix) && ours.every((array, which) => isSame(array, theirs[which]!));
+}
+
+function isSame(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
+  if (a === b) return true;
+  if (a.length !== b.length) return false;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
+  return true;
+}
+
 /** A drawable that bends with the nodes of one entity: it has its own geometries and the materials of its original. */
 export class SoftSkin {
   readonly drawable: Drawable;
   private readonly parts: CarriedPart[];
+  private readonly rest: RestForm;
 
+  /** `before`: the skin that this one takes the place of, which may know most of it already. */
   constructor(
     readonly form: SoftForm,
     plain: Drawable,
     quality: Quality,
+    before: SoftSkin | null = null,
   ) {
     const { solid, cloth, rope } = LONGEST[quality];
     const longest = form.edge * (form.corners === 4 ? solid : form.corners === 3 ? cloth : rope);
-    const finder = new ElementFinder(form);
     const torn = form.origins && new TornSheet(form.elements, form.origins);
     // A rope that is broken everywhere has nothing to draw.
     const shown = form.count > 0 ? plain.parts : [];
+    this.rest = before?.rest.fits(form, shown, longest) ? before.rest : new RestForm(form, shown, longest);
+    const { finder } = this.rest;
     const levelErrors = Array.from({ length: LEVELS }, (_, level) => SAG * longest * 2 ** (level + 1));
     this.parts = [];
-    const parts: DrawablePart[] = shown.map((part) => {
-      const refined = refine(part.geometry, part.matrix, longest);
-      const cut = torn && cutAlongTears(refined.geometry, finder, torn);
-      const geometry = cut?.geometry ?? refined.geometry;
+    const parts: DrawablePart[] = shown.map((part, at) => {
+      const { refined, elements } = this.rest.parts[at]!;
+      const cut = torn && cutAlongTears(refined.geometry, elements, finder, torn);
+      const geometry = cut?.geometry ?? refined.geometry.clone();
       const whole = geometry.index!.count;
-      this.parts.push(new CarriedPart(geometry, form, finder, cut?.elements ?? null));
+      this.parts.push(new CarriedPart(geometry, form, finder, cut?.elements ?? elements));
       // Coarser triangles of a broken rope or a torn sheet would join its pieces.
       const isCut = cut !== null || geometry.index!.count < whole;
-      const levels = isCut ? levelErrors.map(() => geometry.index) : coarserLevels(refined, part, plain.levelErrors ?? [], levelErrors);
+      const levels = isCut ? levelErrors.map(() => geometry.index) : coarserLevels({ ...refined, geometry }, part, plain.levelErrors ?? [], levelErrors);
       return { geometry, material: part.material, matrix: NONE, levels };
     });
     this.drawable = { parts, levelErrors, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };

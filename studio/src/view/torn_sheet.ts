@@ -116,17 +116,18 @@ export interface CutGeometry {
   elements: number[];
 }
 
-/** Cuts a drawn geometry along the tears of the sheet that carries it. Null where no tear crosses it. */
-export function cutAlongTears(geometry: BufferGeometry, finder: ElementFinder, sheet: TornSheet): CutGeometry | null {
-  const cutter = new Cutter(geometry, finder, sheet);
+/**
+ * Cuts a drawn geometry along the tears of the sheet that carries it. `nearest`: for each vertex the nearest triangle of the sheet.
+ * Null where no tear crosses it.
+ */
+export function cutAlongTears(geometry: BufferGeometry, nearest: ArrayLike<number>, finder: ElementFinder, sheet: TornSheet): CutGeometry | null {
+  const cutter = new Cutter(geometry, Array.from(nearest), finder, sheet);
   const triangles = cutter.cut(geometry.index!.array);
   return cutter.hasCut ? { geometry: geometryOf(cutter.attributes, triangles), elements: cutter.elements } : null;
 }
 
 class Cutter {
   readonly attributes;
-  /** For each vertex the triangle of the sheet that carries it. */
-  readonly elements: number[] = [];
   private readonly positions: number[];
   /** Number of vertices before any was added. */
   private readonly count: number;
@@ -138,13 +139,14 @@ class Cutter {
 
   constructor(
     geometry: BufferGeometry,
+    /** For each vertex the triangle of the sheet that carries it. */
+    readonly elements: number[],
     private readonly finder: ElementFinder,
     private readonly sheet: TornSheet,
   ) {
     this.attributes = numbersOf(geometry);
     this.positions = this.attributes.get("position")!.values;
     this.count = this.positions.length / 3;
-    for (let v = 0; v < this.count; ++v) this.elements.push(this.elementAt(v, v, 0));
   }
 
   get hasCut(): boolean {
