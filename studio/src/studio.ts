@@ -321,6 +321,9 @@ export class Studio implements Parts {
       case "rope_broke":
         this.entities.redress(event.index);
         break;
+      case "sheet_tore":
+        this.entities.softs.tear(event.index, event.nodes);
+        break;
       case "history":
         this.document.takeHistory(event);
         break;

@@ -113,7 +113,7 @@ export function offerTestHook(studio: Studio, headset: VrSession, sounds: Contac
           drawn: studio.entities.drawableOf(entity.index) !== undefined,
         };
       }),
-    loading: () => studio.entities.loading,
+    loading: () => studio.entities.loading || Number(studio.entities.isSettling),
     frames: () => studio.view.frames,
     drawn: () => ({ calls: studio.view.renderer.info.render.calls, triangles: studio.view.renderer.info.render.triangles }),
     levelOf: (index) => studio.entities.levelOf(index),

@@ -1,27 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The surface of a liquid that the Studio makes from particles: closed, smooth, as large as they are, at every moment. Lengths are in spacings.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
 import { describe, it } from "node:test";
-import { fileURLToPath } from "node:url";
+import { loadSource, randomNumbers } from "./studio_source.mjs";
 
-const STUDIO = new URL("../../studio/", import.meta.url);
-const require = createRequire(new URL("package.json", STUDIO));
-// Vite brings its own compiler.
-const { buildSync } = createRequire(require.resolve("vite"))("esbuild");
-const entry = process.env.EMBODY_TEST_MESHER ?? fileURLToPath(new URL("src/view/liquid_mesher.ts", STUDIO));
-const [program] = buildSync({ entryPoints: [entry], bundle: true, format: "esm", write: false }).outputFiles;
-const { LiquidMesher } = await import(`data:text/javascript;base64,${Buffer.from(program.contents).toString("base64")}`);
-
-/** Numbers of 0 to 1 that are the same in each run (mulberry32). */
-function randomNumbers(seed) {
-  return () => {
-    seed = (seed + 0x6d2b79f5) | 0;
-    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-}
+const { LiquidMesher } = await loadSource(`export * from "${process.env.EMBODY_TEST_MESHER ?? "./view/liquid_mesher.ts"}"`);
 
 /** Particles of a box: each somewhere in its cube of the volume (`jitter` 1) or in the middle of it (0). */
 function box(size, jitter, random) {

@@ -195,7 +195,7 @@ export interface TakeState {
 /** Something that happened in the run. */
 export interface TimeMark {
   time: number;
-  kind: "contact" | "action" | "rope_broke" | "hand" | "branch";
+  kind: "contact" | "action" | "rope_broke" | "sheet_tore" | "hand" | "branch";
   a?: number;
   b?: number;
   /** N s. */
@@ -324,7 +324,7 @@ export interface LibraryFill {
 
 /** The mesh that carries a deformable entity's drawn form, at rest, in the entity's frame, with its scale applied. */
 export interface SimulationMesh {
-  /** x, y, z of each node, m. */
+  /** x, y, z of each node, m. Where a sheet tore two nodes have the same place; the new one is the last. */
   nodes: number[];
   /** Of a solid: four nodes of each tetrahedron. */
   tetrahedra?: number[];
@@ -497,6 +497,7 @@ export type ServerEvent =
   | ({ event: "question" } & Question)
   | { event: "question_over"; question: number }
   | { event: "rope_broke"; index: number; segment: number; tension: number; position: Vector }
+  | { event: "sheet_tore"; index: number; nodes: number; position: Vector }
   | { event: "impacts"; impacts: Impact[] }
   | { event: "hand"; hand: string; impulse: number; index: number; other: number; position: Vector }
   | { event: "action"; name: string; id: number; sender: number; receiver: number }

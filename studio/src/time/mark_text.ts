@@ -23,6 +23,8 @@ export function markText(mark: TimeMark, scene: Pick<SceneDocument, "entity">): 
       return mark.name ? t("Action “{{name}}”", { name: mark.name }) : t("Action");
     case "rope_broke":
       return t("{{name}} broke", { name: name(mark.a) });
+    case "sheet_tore":
+      return t("{{name}} tore", { name: name(mark.a) });
     case "hand":
       return t("A hand took {{name}}", { name: name(mark.a) });
     case "branch":

@@ -28,7 +28,7 @@ export class MomentView {
     const now = performance.now();
     motion.take(frame, now, false);
     entities.takePoints(frame, now, false);
-    while (entities.loading > 0) await new Promise<void>((done) => setTimeout(done, 5));
+    while (entities.isSettling) await new Promise<void>((done) => setTimeout(done, 5));
     view.advance(now);
     await entities.clouds.settle(now);
     view.advance(now);

@@ -17,7 +17,7 @@ const MOST_TOLD = 4;
 const RULER_PX = 70;
 const ARROW_STEPS = 1;
 const SHIFT_STEPS = 10;
-const COLORS: Record<TimeMark["kind"], string> = { contact: "--dim", action: "--accent", rope_broke: "--error", hand: "--wants", branch: "--accent" };
+const COLORS: Record<TimeMark["kind"], string> = { contact: "--dim", action: "--accent", rope_broke: "--error", sheet_tore: "--error", hand: "--wants", branch: "--accent" };
 
 /** The take as a line: a ruler, marks, and the moment that is shown. Dragging on it scrubs. */
 export class Track {

@@ -120,6 +120,11 @@ export class EntityView {
     return this.pending.size;
   }
 
+  /** Some entities are not yet drawn as they are: they are being loaded, or another mesh of theirs is. */
+  get isSettling(): boolean {
+    return this.loading > 0 || this.softs.isDressing;
+  }
+
   /** How many of those that were begun since nothing was loading. */
   get loadingOf(): number {
     return this.begun.size;
@@ -152,7 +157,7 @@ export class EntityView {
 
   /** The mesh that carries a soft entity's form has changed: a rope has broken. */
   redress(index: number): void {
-    this.softs.undress(index);
+    this.softs.age(index);
     this.put(index);
   }
 
@@ -327,10 +332,12 @@ export class EntityView {
   private async putSoft(entity: Entity): Promise<void> {
     const { index, model, scale } = entity;
     const key = `soft ${index} ${scale ?? 1} ${model ?? shapeKey(entity.shape!)}`;
-    if (this.softs.skinOf(index) && this.keep(entity, key)) return;
-    this.begin(index);
+    if (!this.softs.needsSkin(index) && this.keep(entity, key)) return;
+    // What is drawn already stays until then.
+    const isDrawn = this.softs.skinOf(index) !== null && this.batchOf.get(index)?.key === key;
+    if (!isDrawn) this.begin(index);
     try {
-      const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
+      const plain = model ? this.models.drawable(model) : shapeDrawable(entity);
       const skin = await this.softs.dress(index, plain, scale ?? 1, this.quality);
       // The entity may have changed while the mesh was being loaded.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
@@ -342,7 +349,8 @@ export class EntityView {
     } catch (error) {
       this.failed.emit({ index, reason: (error as Error).message });
     }
-    this.end(index);
+    if (isDrawn) this.loaded.emit();
+    else this.end(index);
   }
 
   /** Keeps an entity that looks as before in its batch; false where it looks different. */

@@ -3,10 +3,11 @@ import { BufferAttribute, BufferGeometry, type InterleavedBufferAttribute, Matri
 
 const MOST_PASSES = 8;
 const MOST_VERTICES = 60_000;
-/** More than there are ever vertices, so that two numbers make one key. */
-const KEY_STEP = 2 ** 26;
+/** More than there are ever vertices, so that the numbers of two make one key. */
+export const EDGE_KEY_STEP = 2 ** 26;
 
-interface Numbers {
+/** The numbers of one attribute, `size` for each vertex. */
+export interface Numbers {
   size: number;
   values: number[];
 }
@@ -24,8 +25,7 @@ export interface Refined {
 export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: number): Refined {
   const placed = geometry.clone();
   if (!placed.getAttribute("normal")) placed.computeVertexNormals();
-  const attributes = new Map<string, Numbers>();
-  for (const [name, attribute] of Object.entries(placed.attributes)) attributes.set(name, read(attribute));
+  const attributes = numbersOf(placed);
   placeAll(attributes.get("position")!, (vector) => vector.applyMatrix4(matrix));
   const turn = new Matrix3().getNormalMatrix(matrix);
   placeAll(attributes.get("normal")!, (vector) => vector.applyNormalMatrix(turn));
@@ -40,11 +40,25 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
   }
   // The mean of two unit vectors is shorter than 1.
   placeAll(attributes.get("normal")!, (vector) => vector.normalize());
+  return { geometry: geometryOf(attributes, triangles), stages };
+}
 
-  const refined = new BufferGeometry();
-  for (const [name, { size, values }] of attributes) refined.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
-  refined.setIndex(triangles);
-  return { geometry: refined, stages };
+export function numbersOf(geometry: BufferGeometry): Map<string, Numbers> {
+  return new Map(Object.entries(geometry.attributes).map(([name, attribute]) => [name, read(attribute)]));
+}
+
+export function geometryOf(attributes: Map<string, Numbers>, triangles: number[]): BufferGeometry {
+  const geometry = new BufferGeometry();
+  for (const [name, { size, values }] of attributes) geometry.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
+  geometry.setIndex(triangles);
+  return geometry;
+}
+
+/** Adds a vertex between two, at this share of the way from `a` to `b`; returns its number. */
+export function addBetween(attributes: Map<string, Numbers>, a: number, b: number, share: number): number {
+  for (const { size, values } of attributes.values())
+    for (let k = 0; k < size; ++k) values.push((1 - share) * values[size * a + k]! + share * values[size * b + k]!);
+  return attributes.get("position")!.values.length / 3 - 1;
 }
 
 // Converts quantised numbers to floats.
@@ -71,38 +85,40 @@ function halve(triangles: number[], attributes: Map<string, Numbers>, longest: n
   };
   const middles = new Map<number, number>();
   const middle = (a: number, b: number) => {
-    const key = Math.min(a, b) * KEY_STEP + Math.max(a, b);
+    const key = Math.min(a, b) * EDGE_KEY_STEP + Math.max(a, b);
     let found = middles.get(key);
     if (found === undefined) {
-      found = values.length / 3;
+      found = addBetween(attributes, a, b, 0.5);
       middles.set(key, found);
-      for (const one of attributes.values())
-        for (let k = 0; k < one.size; ++k) one.values.push((one.values[one.size * a + k]! + one.values[one.size * b + k]!) / 2);
     }
     return found;
   };
   const out: number[] = [];
   for (let t = 0; t < triangles.length; t += 3) {
     if (values.length / 3 > MOST_VERTICES) return null;
-    let [a, b, c] = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
-    const long = [isLong(a, b), isLong(b, c), isLong(c, a)];
-    const count = long.filter(Boolean).length;
-    // Rotated so that the edge that differs from the two others comes last.
-    const odd = count === 1 ? long.indexOf(true) : count === 2 ? long.indexOf(false) : 2;
-    if (odd === 0) [a, b, c] = [b, c, a];
-    else if (odd === 1) [a, b, c] = [c, a, b];
-    if (count === 0) {
-      out.push(a, b, c);
-    } else if (count === 1) {
-      const ca = middle(c, a);
-      out.push(a, b, ca, ca, b, c);
-    } else if (count === 2) {
-      const [ab, bc] = [middle(a, b), middle(b, c)];
-      out.push(ab, b, bc, a, ab, bc, a, bc, c);
-    } else {
-      const [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-      out.push(a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca);
-    }
+    divide(triangles[t]!, triangles[t + 1]!, triangles[t + 2]!, isLong, middle, out);
   }
   return middles.size > 0 ? out : null;
+}
+
+/** Appends a triangle to `out`, divided at the new vertices `point(from, to)` of its edges that are cut. */
+export function divide(a: number, b: number, c: number, isCut: (from: number, to: number) => boolean, point: (from: number, to: number) => number, out: number[]): void {
+  const cut = [isCut(a, b), isCut(b, c), isCut(c, a)];
+  const count = cut.filter(Boolean).length;
+  // Rotated so that the edge that differs from the two others comes last.
+  const odd = count === 1 ? cut.indexOf(true) : count === 2 ? cut.indexOf(false) : 2;
+  if (odd === 0) [a, b, c] = [b, c, a];
+  else if (odd === 1) [a, b, c] = [c, a, b];
+  if (count === 0) {
+    out.push(a, b, c);
+  } else if (count === 1) {
+    const ca = point(c, a);
+    out.push(a, b, ca, ca, b, c);
+  } else if (count === 2) {
+    const [ab, bc] = [point(a, b), point(b, c)];
+    out.push(ab, b, bc, a, ab, bc, a, bc, c);
+  } else {
+    const [ab, bc, ca] = [point(a, b), point(b, c), point(c, a)];
+    out.push(a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca);
+  }
 }

@@ -2,6 +2,7 @@
 import { Matrix4, Quaternion, type Vector3 } from "three";
 import type { Connection } from "../connection/connection";
 import type { Frame, PointSet } from "../connection/frame";
+import type { SimulationMesh } from "../connection/messages";
 import type { Drawable } from "./drawable";
 import type { Quality } from "./tint";
 import { SoftForm, SoftSkin } from "./soft_form";
@@ -11,18 +12,25 @@ interface Nodes {
   from: Float32Array;
   to: Float32Array;
   now: Float32Array;
-  /** Positions in the entity's frame. */
+  /** Positions of the skin's nodes in the entity's frame. */
   local: Float32Array;
   start: number;
   duration: number;
   skin: SoftSkin | null;
+  /** The skin's mesh is not the present one, and another was not asked for yet. */
+  isOld: boolean;
   isBroken: boolean;
+  /** The fewest and the most numbers that its mesh may have, as far as it is torn. */
+  least: number;
+  most: number;
 }
 
 /** Entities whose nodes carry their drawn form, and the nodes' positions. */
 export class SoftBodies {
   private readonly all = new Map<number, Nodes>();
   private readonly moving = new Set<number>();
+  /** Entities whose skins are being made. */
+  private readonly dressing = new Set<number>();
   private lastFrame = 0;
   private readonly turn = new Matrix4();
   private readonly back = new Quaternion();
@@ -42,6 +50,17 @@ export class SoftBodies {
     return this.all.get(index)?.skin ?? null;
   }
 
+  /** Some skins are being made. */
+  get isDressing(): boolean {
+    return this.dressing.size > 0;
+  }
+
+  /** Whether the entity has no skin of its present mesh (yet). */
+  needsSkin(index: number): boolean {
+    const nodes = this.all.get(index);
+    return !nodes?.skin || nodes.isOld || this.dressing.has(index);
+  }
+
   /** Takes a frame's nodes; returns the entities that became soft, are no longer soft, or have another mesh. */
   take(frame: Frame, now: number, smooth: boolean): number[] {
     const changed: number[] = [];
@@ -55,19 +74,17 @@ export class SoftBodies {
         if (this.drop(set.index)) changed.push(set.index);
         continue;
       }
-      let nodes = this.all.get(set.index);
-      if (nodes?.to.length !== set.positions.length) {
-        this.drop(set.index);
-        const places = placesOf(set, new Float32Array(set.positions.length));
-        nodes = { from: places.slice(), to: places, now: places.slice(), local: places.slice(), start: now, duration: 0, skin: null, isBroken: false };
-        this.all.set(set.index, nodes);
-        changed.push(set.index);
-      } else {
+      const nodes = this.all.get(set.index);
+      if (nodes && goesOn(nodes, set)) {
         this.blend(nodes, now);
-        nodes.from.set(nodes.now);
-        placesOf(set, nodes.to);
+        move(nodes, set);
         nodes.start = now;
         nodes.duration = duration;
+        // The answer to what was asked for is newer than this frame.
+        if (nodes.isOld && !this.dressing.has(set.index)) changed.push(set.index);
+      } else {
+        this.all.set(set.index, nodesOf(set, now));
+        changed.push(set.index);
       }
       this.moving.add(set.index);
     }
@@ -86,14 +103,34 @@ export class SoftBodies {
 
   /**
    * A drawable that bends with the entity's nodes, made from its drawable at rest; the caller disposes of its geometries.
-   * Null where the entity is not soft (any more).
+   * Null where the entity is not soft (any more), or where the mesh is not of the last frame: then the next one asks again.
    */
-  async dress(index: number, plain: Drawable, scale: number, quality: Quality): Promise<SoftSkin | null> {
-    const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
-    const nodes = this.all.get(index);
-    if (!mesh || nodes?.to.length !== mesh.nodes.length) return null;
+  async dress(index: number, plain: Drawable | Promise<Drawable>, scale: number, quality: Quality): Promise<SoftSkin | null> {
+    const asking = this.all.get(index);
+    if (asking) asking.isOld = false;
+    this.dressing.add(index);
+    try {
+      const drawable = await plain;
+      const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
+      const nodes = this.all.get(index);
+      return nodes && mesh ? this.wear(index, nodes, mesh, drawable, scale, quality) : null;
+    } finally {
+      this.dressing.delete(index);
+    }
+  }
+
+  private wear(index: number, nodes: Nodes, mesh: SimulationMesh, plain: Drawable, scale: number, quality: Quality): SoftSkin | null {
+    const form = new SoftForm(mesh, scale);
+    const whole = form.origins ? 3 * form.origins.filter((origin, node) => origin === node).length : form.nodes.length;
+    const { length } = nodes.to;
+    nodes.isOld = length !== form.nodes.length;
+    // Of a sheet that goes on tearing the mesh may be newer than the last frame.
+    if (length > form.nodes.length || length < whole) return null;
     nodes.isBroken = (mesh.broken?.length ?? 0) > 0;
-    nodes.skin = new SoftSkin(new SoftForm(mesh, scale), plain, quality);
+    nodes.least = whole;
+    nodes.most = Math.max(nodes.most, form.nodes.length);
+    nodes.local = new Float32Array(form.nodes.length);
+    nodes.skin = new SoftSkin(form, plain, quality, nodes.skin);
     this.moving.add(index);
     return nodes.skin;
   }
@@ -103,9 +140,17 @@ export class SoftBodies {
     return [...this.all].filter(([, nodes]) => nodes.isBroken).map(([index]) => index);
   }
 
-  undress(index: number): void {
+  /** The entity's mesh has changed. */
+  age(index: number): void {
     const nodes = this.all.get(index);
-    if (nodes) nodes.skin = null;
+    if (nodes) nodes.isOld = true;
+  }
+
+  /** The entity has torn, so that it has more nodes from the next frame on. */
+  tear(index: number, more: number): void {
+    this.age(index);
+    const nodes = this.all.get(index);
+    if (nodes) nodes.most += 3 * more;
   }
 
   /** Bends the entity's skin to the present nodes, in the entity's frame at this pose. */
@@ -115,7 +160,13 @@ export class SoftBodies {
     this.blend(nodes, now);
     const { now: places, local } = nodes;
     const turn = this.turn.makeRotationFromQuaternion(this.back.copy(rotation).invert()).elements;
-    for (let at = 0; at < places.length; at += 3) {
+    const { origins } = nodes.skin.form;
+    for (let at = 0; at < local.length; at += 3) {
+      if (at >= places.length) {
+        // Not torn yet.
+        local.copyWithin(at, 3 * origins![at / 3]!, 3 * origins![at / 3]! + 3);
+        continue;
+      }
       const x = (places[at]! - position.x) / scale;
       const y = (places[at + 1]! - position.y) / scale;
       const z = (places[at + 2]! - position.z) / scale;
@@ -140,6 +191,31 @@ export class SoftBodies {
     const { from, to, now: places } = nodes;
     for (let at = 0; at < places.length; ++at) places[at] = from[at]! + part * (to[at]! - from[at]!);
   }
+}
+
+function nodesOf(set: PointSet, now: number): Nodes {
+  const places = placesOf(set, new Float32Array(set.positions.length));
+  const { length } = places;
+  return { from: places.slice(), to: places, now: places.slice(), local: places.slice(), start: now, duration: 0, skin: null, isOld: false, isBroken: false, least: length, most: length };
+}
+
+/** Whether these are the nodes of the same mesh, which may be torn further or less far. */
+function goesOn({ to, skin, least, most }: Nodes, { positions: { length } }: PointSet): boolean {
+  return to.length === length || (skin !== null && length >= least && length <= most);
+}
+
+function move(nodes: Nodes, set: PointSet): void {
+  const { length } = set.positions;
+  if (nodes.to.length === length) {
+    nodes.from.set(nodes.now);
+    placesOf(set, nodes.to);
+    return;
+  }
+  nodes.isOld = true;
+  nodes.to = placesOf(set, new Float32Array(length));
+  nodes.from = nodes.to.slice();
+  nodes.from.set(nodes.now.subarray(0, length));
+  nodes.now = nodes.from.slice();
 }
 
 function placesOf(set: PointSet, places: Float32Array): Float32Array {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Quaternion, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
 import { type Drawable, type DrawablePart, isClosed } from "./drawable";
+import { ElementFinder } from "./element_finder";
 import { refine, type Refined } from "./refine";
 import type { Quality } from "./tint";
+import { cutAlongTears, originsOf, TornSheet } from "./torn_sheet";
 
 const NONE = new Matrix4();
 /** Longest drawn edges, in edges of the elements: short ones look round between the nodes of cloth and ropes. */
@@ -35,6 +37,8 @@ export class SoftForm {
   readonly edge: number;
   /** For each node nine numbers by rows: the deformation gradient, the mean of its elements' weighted by their size. */
   readonly deformation: Float32Array;
+  /** Of a torn sheet: for each node the one that it came from. Null where nothing is torn. */
+  readonly origins: Uint32Array | null;
   /** For each element nine numbers by rows: the matrix from a vector from its first node to its components along the directions at rest. */
   private readonly inverse: Float32Array;
   private readonly amount: Float32Array;
@@ -49,6 +53,7 @@ export class SoftForm {
     this.nodes = Float32Array.from(mesh.nodes, (number) => number / scale);
     this.elements = Uint32Array.from(elements);
     this.corners = corners;
+    this.origins = corners === 3 ? originsOf(this.nodes) : null;
     const count = this.count;
     this.inverse = new Float32Array(9 * count);
     this.amount = new Float32Array(count);
@@ -71,6 +76,14 @@ export class SoftForm {
 
   get count(): number {
     return this.elements.length / this.corners;
+  }
+
+  /** Whether the elements of the other are at the same places at rest, whatever their nodes are. */
+  isSameAtRest(other: SoftForm): boolean {
+    if (this.corners !== other.corners || this.count !== other.count) return false;
+    const isAt = (i: number, k: number) => this.nodes[3 * this.elements[i]! + k] === other.nodes[3 * other.elements[i]! + k];
+    for (let i = 0; i < this.elements.length; ++i) if (!isAt(i, 0) || !isAt(i, 1) || !isAt(i, 2)) return false;
+    return true;
   }
 
   /** Barycentric weights of the nodes at a point: outside of the element some are negative. */
@@ -157,93 +170,6 @@ class RopeFrame {
   }
 }
 
-/** Finds the element that contains a point, or the nearest one. */
-class ElementFinder {
-  private readonly cells = new Map<number, number[]>();
-  private readonly box = new Box3();
-  private readonly size: [number, number, number];
-  private readonly own = new Float32Array(4);
-  private readonly best = new Float32Array(4);
-
-  constructor(private readonly form: SoftForm) {
-    this.box.setFromArray(form.nodes);
-    const extent = this.box.getSize(new Vector3());
-    this.size = [0, 1, 2].map((axis) => Math.floor(extent.getComponent(axis) / form.edge) + 1) as [number, number, number];
-    const around = new Box3();
-    const corner = new Vector3();
-    for (let t = 0; t < form.count; ++t) {
-      around.makeEmpty();
-      for (let k = 0; k < form.corners; ++k) around.expandByPoint(corner.fromArray(form.nodes, 3 * form.elements[form.corners * t + k]!));
-      const low = this.cellOf(around.min.x, around.min.y, around.min.z);
-      const high = this.cellOf(around.max.x, around.max.y, around.max.z);
-      this.visit(low, high, (cell) => {
-        const list = this.cells.get(cell);
-        if (list) list.push(t);
-        else this.cells.set(cell, [t]);
-      });
-    }
-  }
-
-  /** The element, and the weights of its nodes at its point that is nearest; none is negative. */
-  find(x: number, y: number, z: number, weights: Float32Array): number {
-    const middle = this.cellOf(x, y, z);
-    let found = -1;
-    let least = Infinity;
-    const farthest = Math.max(...this.size);
-    for (let ring = 0; ring <= farthest && !(ring > 0 && least <= ((ring - 1) * this.form.edge) ** 2); ++ring) {
-      const low = middle.map((c) => Math.max(0, c - ring));
-      const high = middle.map((c, axis) => Math.min(this.size[axis]! - 1, c + ring));
-      this.visit(low, high, (cell, i, j, k) => {
-        if (Math.max(Math.abs(i - middle[0]!), Math.abs(j - middle[1]!), Math.abs(k - middle[2]!)) !== ring) return;
-        for (const t of this.cells.get(cell) ?? []) {
-          const distance = this.squareTo(t, x, y, z);
-          if (distance >= least) continue;
-          least = distance;
-          found = t;
-          this.best.set(this.own);
-        }
-      });
-    }
-    weights.set(this.best);
-    return found;
-  }
-
-  /** Square of the distance to the point with the weights clamped to zero: 0 inside a solid. Leaves these in `own`. */
-  private squareTo(t: number, x: number, y: number, z: number): number {
-    const { nodes, elements, corners } = this.form;
-    this.form.weightsAt(t, x, y, z, this.own);
-    let sum = 0;
-    let isInside = corners === 4;
-    for (let k = 0; k < corners; ++k) {
-      isInside &&= this.own[k]! >= 0;
-      sum += this.own[k] = Math.max(0, this.own[k]!);
-    }
-    if (isInside) return 0;
-    let dx = x, dy = y, dz = z;
-    for (let k = 0; k < corners; ++k) {
-      const at = 3 * elements[corners * t + k]!;
-      const weight = (this.own[k]! /= sum);
-      dx -= weight * nodes[at]!;
-      dy -= weight * nodes[at + 1]!;
-      dz -= weight * nodes[at + 2]!;
-    }
-    return dx * dx + dy * dy + dz * dz;
-  }
-
-  private cellOf(x: number, y: number, z: number): number[] {
-    return [x, y, z].map((value, axis) => {
-      const cell = Math.floor((value - this.box.min.getComponent(axis)) / this.form.edge);
-      return Math.min(Math.max(cell, 0), this.size[axis]! - 1);
-    });
-  }
-
-  private visit(low: number[], high: number[], each: (cell: number, i: number, j: number, k: number) => void): void {
-    for (let i = low[0]!; i <= high[0]!; ++i)
-      for (let j = low[1]!; j <= high[1]!; ++j)
-        for (let k = low[2]!; k <= high[2]!; ++k) each((i * this.size[1] + j) * this.size[2] + k, i, j, k);
-  }
-}
-
 /** A number for each element: different on the two sides of a break of a rope. */
 function piecesOf(form: SoftForm): Uint32Array {
   const pieces = new Uint32Array(form.count);
@@ -282,6 +208,8 @@ class CarriedPart {
     readonly geometry: BufferGeometry,
     form: SoftForm,
     finder: ElementFinder,
+    /** For each vertex the element that carries it. */
+    elements: ArrayLike<number>,
   ) {
     this.position = geometry.getAttribute("position") as BufferAttribute;
     this.normal = geometry.getAttribute("normal") as BufferAttribute;
@@ -297,7 +225,9 @@ class CarriedPart {
     const pieceOf = piecesOf(form);
     const anchor = new Vector3();
     for (let v = 0; v < count; ++v) {
-      const t = finder.find(this.offsets[3 * v]!, this.offsets[3 * v + 1]!, this.offsets[3 * v + 2]!, weights);
+      anchor.fromArray(this.offsets, 3 * v);
+      const t = elements[v]!;
+      finder.weigh(t, anchor.x, anchor.y, anchor.z, weights);
       pieces[v] = pieceOf[t]!;
       anchor.set(0, 0, 0);
       for (let k = 0; k < corners; ++k) {
@@ -426,31 +356,79 @@ function longestEdge(index: ArrayLike<number>, position: ArrayLike<number>): num
   return Math.sqrt(most);
 }
 
+/** Of each part of a drawable the refined geometry at rest, and for each of its vertices the nearest element: the same however far a sheet is torn. */
+class RestForm {
+  readonly finder: ElementFinder;
+  readonly parts: { refined: Refined; elements: Uint32Array }[];
+
+  constructor(
+    private readonly form: SoftForm,
+    private readonly plain: readonly DrawablePart[],
+    private readonly longest: number,
+  ) {
+    this.finder = new ElementFinder(form);
+    this.parts = plain.map((part) => {
+      const refined = refine(part.geometry, part.matrix, longest);
+      return { refined, elements: nearestElements(refined.geometry, this.finder) };
+    });
+  }
+
+  /** Whether it is that of these, too. */
+  fits(form: SoftForm, plain: readonly DrawablePart[], longest: number): boolean {
+    return longest === this.longest && form.isSameAtRest(this.form) && plain.length === this.plain.length && plain.every((part, at) => hasSameForm(part, this.plain[at]!));
+  }
+}
+
+function nearestElements(geometry: BufferGeometry, finder: ElementFinder): Uint32Array {
+  const at = geometry.getAttribute("position").array;
+  const weights = new Float32Array(4);
+  return Uint32Array.from({ length: at.length / 3 }, (_, v) => finder.find(at[3 * v]!, at[3 * v + 1]!, at[3 * v + 2]!, weights));
+}
+
+function hasSameForm(a: DrawablePart, b: DrawablePart): boolean {
+  const arrays = ({ geometry }: DrawablePart) => [geometry.getAttribute("position").array, geometry.index?.array ?? []];
+  const [ours, theirs] = [arrays(a), arrays(b)];
+  return a.matrix.equals(b.matrix) && ours.every((array, which) => isSame(array, theirs[which]!));
+}
+
+function isSame(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
+  if (a === b) return true;
+  if (a.length !== b.length) return false;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
+  return true;
+}
+
 /** A drawable that bends with the nodes of one entity: it has its own geometries and the materials of its original. */
 export class SoftSkin {
   readonly drawable: Drawable;
   private readonly parts: CarriedPart[];
+  private readonly rest: RestForm;
 
+  /** `before`: the skin that this one takes the place of, which may know most of it already. */
   constructor(
     readonly form: SoftForm,
     plain: Drawable,
     quality: Quality,
+    before: SoftSkin | null = null,
   ) {
     const { solid, cloth, rope } = LONGEST[quality];
     const longest = form.edge * (form.corners === 4 ? solid : form.corners === 3 ? cloth : rope);
-    const finder = new ElementFinder(form);
+    const torn = form.origins && new TornSheet(form.elements, form.origins);
     // A rope that is broken everywhere has nothing to draw.
     const shown = form.count > 0 ? plain.parts : [];
+    this.rest = before?.rest.fits(form, shown, longest) ? before.rest : new RestForm(form, shown, longest);
+    const { finder } = this.rest;
     const levelErrors = Array.from({ length: LEVELS }, (_, level) => SAG * longest * 2 ** (level + 1));
     this.parts = [];
-    const parts: DrawablePart[] = shown.map((part) => {
-      const refined = refine(part.geometry, part.matrix, longest);
-      const { geometry } = refined;
+    const parts: DrawablePart[] = shown.map((part, at) => {
+      const { refined, elements } = this.rest.parts[at]!;
+      const cut = torn && cutAlongTears(refined.geometry, elements, finder, torn);
+      const geometry = cut?.geometry ?? refined.geometry.clone();
       const whole = geometry.index!.count;
-      this.parts.push(new CarriedPart(geometry, form, finder));
-      // Coarser triangles of a broken rope would join its pieces.
-      const isCut = geometry.index!.count < whole;
-      const levels = isCut ? levelErrors.map(() => geometry.index) : coarserLevels(refined, part, plain.levelErrors ?? [], levelErrors);
+      this.parts.push(new CarriedPart(geometry, form, finder, cut?.elements ?? elements));
+      // Coarser triangles of a broken rope or a torn sheet would join its pieces.
+      const isCut = cut !== null || geometry.index!.count < whole;
+      const levels = isCut ? levelErrors.map(() => geometry.index) : coarserLevels({ ...refined, geometry }, part, plain.levelErrors ?? [], levelErrors);
       return { geometry, material: part.material, matrix: NONE, levels };
     });
     this.drawable = { parts, levelErrors, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, bends: true, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
