@@ -284,7 +284,7 @@ def torn_paper() -> dict:
     cottons = {"area_density": 0.2, "thickness": 0.0004, "stretch_stiffness": 1.5e4, "shear_stiffness": 2e3, "bend_stiffness": 1e-5, "tear_strength": 12000, "tear_energy": 20}
     for name, x, color, weave in (("Tissue paper", -0.5, [0.95, 0.93, 0.86], papers), ("Cotton", 0.5, [0.55, 0.66, 0.8], cottons)):
         for side in (-1, 1):
-            entities.append(fixed("Frame", [bar, height + half, bar], [x + side * (half + bar), height + half, -0.03], wood))
+            entities.append(fixed("Frame", [bar, height / 2 + half, bar], [x + side * (half + bar), height / 2 + half, -0.03], wood))
             entities.append(fixed("Frame", [half, bar, bar], [x, height + half + side * (half - bar), -0.03 - 2 * bar], wood))
         steps = [round(-half + 2 * half * k / 16, 6) for k in range(17)]
         pins = [{"position": [across, side * half, 0], "radius": 0.03} for side in (-1, 1) for across in steps]
@@ -294,7 +294,7 @@ def torn_paper() -> dict:
         ball = sphere("Ball", 0.09, [x, height + half + 0.05, 1.2], [0.75, 0.3, 0.22], attributes={"mass": 4, "friction_static": 0.5, "friction_dynamic": 0.4, "friction_rolling": 0.025})
         ball["linear_velocity"] = [0, 1.2, -5]
         entities.append(ball)
-    return scene("Torn paper", "A ball is thrown at a sheet of paper and at one of cotton. Tear strength and Tear energy in the panel make the difference.", [1.5, 1.7, 2.1], [0, 0.95, -0.2], entities)
+    return scene("Torn paper", "A ball is thrown at a sheet of paper and at one of cotton. Tear strength and Tear energy in the panel make the difference.", [1.15, 1.75, 2.3], [0, 0.9, -0.2], entities)
 
 
 def awning() -> dict:
