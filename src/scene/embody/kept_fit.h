@@ -14,9 +14,9 @@ namespace embody::scene {
 struct KeptFit {
     std::string fingerprint;  ///< hash of what the points are made from, 16 hexadecimal digits; empty: one body
     std::size_t min_points = 1, max_points = 0;
-    std::size_t strains = 0;    ///< tetrahedra and nodes of a soft solid; 0: another matter
-    std::size_t segments = 0;   ///< of a rope
-    std::size_t triangles = 0;  ///< of a sheet
+    std::size_t strains = 0;   ///< tetrahedra and nodes of a soft solid; 0: another matter
+    std::size_t segments = 0;  ///< of a rope
+    std::size_t bends = 0;     ///< of a sheet's triangles, of a rope's nodes
     bool is_liquid = false;
 };
 

@@ -88,6 +88,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
     check_limit<SoftSolid>(good_solid(), "yield_stress", &SoftSolid::yield_stress);
     check_limit<Cloth>(good_sheet(), "bend_yield", &Cloth::bend_yield);
     check_limit<Rope>(good_rope(), "break_tension", &Rope::break_tension);
+    check_limit<Rope>(good_rope(), "bend_yield", &Rope::bend_yield);
 }
 
 TEST(DeformableMatter, ElementsHaveNodesAndAnExtent) {
