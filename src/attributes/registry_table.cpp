@@ -265,8 +265,8 @@ void add_soft_and_cloth(Rows& rows) {
                   "Curvature that the friction between its threads holds: more folds stay and it comes to rest sooner. "
                   "Of woven cloth 20 to 60 (Kawabata's 2HB over 2B)."},
                  "1/m", 40, 0, 1e6);
-    cloth.number({"bend_yield", "C", "Fold limit",
-                  "Curvature beyond which a fold stays for good, as in paper, foil and sheet metal."},
+    cloth.number({"bend_yield", "CP", "Fold limit",
+                  "Curvature beyond which a bend stays for good, as in paper, foil, sheet metal and wire."},
                  "1/m", infinity, 0, infinity);
     cloth.whole({"cloth_nodes", "C", "Nodes",
                  "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},

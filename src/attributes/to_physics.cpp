@@ -17,6 +17,8 @@
 namespace embody::attributes {
 namespace {
 
+constexpr double min_yield = 1e-6;  // 1/m: of bends that stay
+
 // Combine rule of a word of the registry; the default where a file left it out.
 physics::CombineRule combine_rule(const std::string& name) {
     constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 7> rules{
@@ -274,7 +276,6 @@ Result<physics::DeformableDefinition> soft_solid_from_attributes(const Attribute
 
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
                                                             const Taxonomy* taxonomy) {
-    constexpr double min_yield = 1e-6;                      // 1/m
     constexpr double min_strength = 1e-6, min_tear = 1e-9;  // N/m, J/m
     const double area = area_of(sheet);
     const Result<double> area_density = spread(attributes, "area_density", area, "m²", "cloth");
@@ -319,6 +320,7 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     rope.linear_density = *linear_density;
     rope.axial_stiffness = number_or_standard(attributes, "axial_stiffness");
     rope.bend_rigidity = number_or_standard(attributes, "bend_rigidity");
+    rope.bend_yield = std::max(number_or_standard(attributes, "bend_yield"), min_yield);
     rope.twist_rigidity = number_or_standard(attributes, "twist_rigidity");
     rope.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     rope.break_tension = std::max(number_or_standard(attributes, "break_tension"), min_break);

@@ -258,6 +258,8 @@ TEST(ToPhysics, RopesWeighWhatTheirMassSaysAndBreakWhereTheyAreTold) {
     ASSERT_EQ(kind_of(set), PhysicalKind::rope);
     set.put({"mass", 0.8, {}, {}, "test", AttributeLevel::manual});
     set.put({"break_tension", 0.0, {}, {}, "test", AttributeLevel::manual});
+    EXPECT_FALSE(std::isfinite(set.number("bend_yield", std::numeric_limits<double>::infinity()))) << "no wire";
+    set.put({"bend_yield", 2.5, {}, {}, "test", AttributeLevel::manual});
     auto made = rope_from_attributes(set, {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}}, 0.02);
     ASSERT_TRUE(made.ok()) << made.error().message();
     EXPECT_TRUE(physics::validate(*made).ok());
@@ -266,6 +268,7 @@ TEST(ToPhysics, RopesWeighWhatTheirMassSaysAndBreakWhereTheyAreTold) {
     EXPECT_EQ(rope.diameter, 0.02);
     EXPECT_EQ(rope.axial_stiffness, set.number("axial_stiffness", -1));
     EXPECT_LT(rope.break_tension, 1e-3) << "by the slightest pull";
+    EXPECT_EQ(rope.bend_yield, 2.5);
     set.put({"mass", 1e-6, {}, {}, "test", AttributeLevel::manual});
     made = rope_from_attributes(set, {{0, 0, 0}, {3, 0, 0}}, 0.02);
     ASSERT_FALSE(made.ok());

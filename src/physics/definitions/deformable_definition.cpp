@@ -178,7 +178,8 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
                        check_number("bend_rigidity", rope.bend_rigidity, 1e-12, 1e9, "N m2"),
                        check_number("twist_rigidity", rope.twist_rigidity, 1e-12, 1e9, "N m2"),
                        check_number("rayleigh_damping", rope.rayleigh_damping, 0, 100, "s"),
-                       check_limit("break_tension", rope.break_tension), check_number("slack", rope.slack, 0, 10));
+                       check_limit("break_tension", rope.break_tension), check_limit("bend_yield", rope.bend_yield),
+                       check_number("slack", rope.slack, 0, 10));
 }
 
 }  // namespace

@@ -59,6 +59,8 @@ struct Rope {
     double twist_rigidity = 1e-3;                                    ///< GJ, N m², 1e-12 … 1e9
     double rayleigh_damping = 0;                                     ///< stiffness-proportional, s, 0 … 100
     double break_tension = std::numeric_limits<double>::infinity();  ///< N, > 0
+    double bend_yield = std::numeric_limits<double>::infinity();     ///< of wires: curvature beyond which a bend stays,
+                                                                     ///< 1/m, > 0
     double slack = 0;  ///< extra length at rest, as a fraction of the length along the nodes, 0 … 10
 };
 
@@ -138,7 +140,9 @@ struct LastingDeformation {
     std::vector<std::array<double, 5>> plastic_strain;
     std::vector<std::uint32_t> broken_segments;  ///< of a rope, ascending
     /// Of a sheet's triangles in their order, in 1/m: the curvature that friction holds, then that of folds that stay,
-    /// each as xx, yy and √2 xy in the triangle's plane with x along the warp. Empty: none.
+    /// each as xx, yy and √2 xy in the triangle's plane with x along the warp. Of a rope's nodes in their order: the
+    /// changes of direction that stay at the node, and where it is clamped before and after it, each as two parts
+    /// across the wire. Empty: none.
     std::vector<std::array<double, 6>> bend;
     /// Of a sheet, in the order in which it tore. New nodes follow those of the definition.
     std::vector<TornCorner> torn_corners;

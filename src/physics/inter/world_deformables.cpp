@@ -199,6 +199,7 @@ LastingDeformation World::lasting_deformation(DeformableHandle deformable) const
     LastingDeformation lasting;
     if (record != nullptr && record->solid()) lasting.plastic_strain = record->solid()->plastic_strain();
     if (record != nullptr && record->cloth()) lasting.bend = record->cloth()->bend_memory().state();
+    if (record != nullptr && record->rope()) lasting.bend = record->rope()->folds().state();
     if (record != nullptr) lasting.torn_corners = record->torn;
     lasting.broken_segments = broken_segments(deformable);
     return lasting;
@@ -220,9 +221,11 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
     const std::size_t segments = record->rope() ? record->nodes().size() - 1 : 0;
     if (std::ranges::any_of(broken, [segments](std::uint32_t segment) { return segment >= segments; }))
         return Error{"broken_segments", "has one that is no segment of the rope"};
-    const std::size_t triangles = record->cloth() ? record->cloth()->triangles().size() : 0;
-    if (!bend.empty() && bend.size() != triangles)
-        return Error{"bend", "must be " + std::to_string(triangles) + ", one a triangle of a sheet"};
+    const std::size_t bent = record->cloth()  ? record->cloth()->triangles().size()
+                             : record->rope() ? record->nodes().size()
+                                              : 0;
+    if (!bend.empty() && bend.size() != bent)
+        return Error{"bend", "must be " + std::to_string(bent) + ", one a triangle of a sheet or a node of a rope"};
     if (!std::ranges::all_of(bend, is_number)) return Error{"bend", "must be finite numbers"};
     const std::size_t before = record->torn.size();
     if (torn.size() < before || !std::equal(record->torn.begin(), record->torn.end(), torn.begin()))
@@ -235,6 +238,7 @@ Result<void> World::set_lasting_deformation(DeformableHandle deformable, const L
     }
     if (solid != nullptr) record->solid()->set_plastic_strain(strains);
     if (record->cloth()) record->cloth()->bend_memory().set_state(bend);
+    if (record->rope()) record->rope()->folds().set_state(bend);
     for (std::uint32_t segment = 0; segment < segments; ++segment)
         record->rope()->set_broken(segment, std::ranges::find(broken, segment) != broken.end());
     wake_up(*record);

@@ -106,13 +106,18 @@ KeptFit fit_of_mesh(const GeometryKey& key, const Geometry& geometry, const Thin
     StateHash hash = hash_of(key, geometry);
     if (const auto* line = std::get_if<LineForm>(&form)) {
         const std::size_t nodes = line->nodes.size();
-        return {.fingerprint = digits(hash), .min_points = nodes, .max_points = nodes, .segments = nodes - 1};
+        return {.fingerprint = digits(hash),
+                .min_points = nodes,
+                .max_points = nodes,
+                .segments = nodes - 1,
+                .bends = nodes};
     }
     const auto& sheet = std::get<attributes::SheetMesh>(form);
     add_elements(hash, sheet.triangles);
     return {.fingerprint = digits(hash),
             .min_points = sheet.nodes.size(),
             .max_points = sheet.nodes.size(),
+            .bends = sheet.triangles.size(),
             .triangles = sheet.triangles};
 }
 
@@ -137,9 +142,9 @@ Result<void> check_kept(const KeptForm& kept, const KeptFit& fit) {
             "must be of " + std::to_string(fit.strains) + " tetrahedra and nodes, got " + std::to_string(strains),
             as_modelled};
     const std::size_t bends = kept.bend.values.size() / numbers_per_bend;
-    if (bends != 0 && bends != fit.triangles.size())
+    if (bends != 0 && bends != fit.bends)
         return Error{"kept.bend",
-                     "must be of " + std::to_string(fit.triangles.size()) + " triangles, got " + std::to_string(bends),
+                     "must be of " + std::to_string(fit.bends) + " triangles or nodes, got " + std::to_string(bends),
                      as_modelled};
     if (!kept.broken.empty() && kept.broken.back() >= fit.segments)
         return Error{"kept.broken", "has a segment that the thing has not, which has " + std::to_string(fit.segments),

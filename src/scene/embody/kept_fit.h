@@ -18,6 +18,7 @@ struct KeptFit {
     std::size_t min_points = 1, max_points = 0;
     std::size_t strains = 0;                              ///< tetrahedra and nodes of a soft solid; 0: another matter
     std::size_t segments = 0;                             ///< of a rope
+    std::size_t bends = 0;                                ///< of a sheet's triangles, of a rope's nodes
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of a sheet
     bool is_liquid = false;
 };

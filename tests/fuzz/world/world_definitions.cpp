@@ -213,13 +213,14 @@ void change_matter(ByteReader& bytes, Cloth& cloth) {
 }
 
 void change_matter(ByteReader& bytes, Rope& rope) {
-    const std::array<std::pair<double*, std::array<double, 2>>, 8> fields{{{&rope.diameter, {0.001, 0.2}},
+    const std::array<std::pair<double*, std::array<double, 2>>, 9> fields{{{&rope.diameter, {0.001, 0.2}},
                                                                            {&rope.linear_density, {0.001, 5}},
                                                                            {&rope.axial_stiffness, {1, 1e6}},
                                                                            {&rope.bend_rigidity, {1e-9, 1}},
                                                                            {&rope.twist_rigidity, {1e-9, 1}},
                                                                            {&rope.rayleigh_damping, {0, 1}},
                                                                            {&rope.break_tension, {0.1, 1000}},
+                                                                           {&rope.bend_yield, {1, 1e3}},
                                                                            {&rope.slack, {0, 2}}}};
     const auto& [field, range] = fields[bytes.below(fields.size())];
     *field = bytes.number(range[0], range[1]);

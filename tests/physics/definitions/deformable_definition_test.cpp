@@ -90,6 +90,7 @@ TEST(DeformableMatter, NumbersOutOfRangeAreRefusedByName) {
     check_limit<Cloth>(good_sheet(), "tear_strength", &Cloth::tear_strength);
     check_limit<Cloth>(good_sheet(), "tear_energy", &Cloth::tear_energy);
     check_limit<Rope>(good_rope(), "break_tension", &Rope::break_tension);
+    check_limit<Rope>(good_rope(), "bend_yield", &Rope::bend_yield);
 }
 
 TEST(DeformableMatter, ElementsHaveNodesAndAnExtent) {

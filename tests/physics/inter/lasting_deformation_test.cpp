@@ -106,6 +106,54 @@ TEST(LastingDeformation, OfAnotherSheetMakesItGoOnAlike) {
     }
 }
 
+// A wire that was bent, at a wall or free: another one in its form with its bends goes on alike, to rounding where it
+// is free.
+TEST(LastingDeformation, OfAnotherWireMakesItGoOnAlike) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Random random(seed);
+        const auto world = make_world(weightless());
+        DeformableDefinition wire =
+            rope_between({0, 0, 0}, {0.4, 0, 0}, 0.02,
+                         {.bend_rigidity = 0.1, .rayleigh_damping = 0.05, .bend_yield = random.between(1, 5)});
+        const bool is_clamped = seed % 2 == 0;
+        if (is_clamped) {
+            wire.pinned = {0};
+            wire.clamps = {{0, {1, 0, 0}}};
+        }
+        const DeformableHandle bent = world->create_deformable(wire).value();
+        EXPECT_TRUE(world->lasting_deformation(bent).bend.empty());
+        std::vector<Vec3> pushed = wire.nodes;
+        for (Vec3& node : pushed) node += Vec3{0, 3 * node.x * node.x, 2 * node.x * node.x * random.between(0.9, 1.1)};
+        ASSERT_TRUE(world->set_nodes(bent, pushed, std::vector<Vec3>(pushed.size())));
+        for (int i = 0; i < 120; ++i) world->step();
+        const LastingDeformation lasting = world->lasting_deformation(bent);
+        ASSERT_EQ(lasting.bend.size(), wire.nodes.size());
+
+        const auto places = world->node_positions(bent);
+        const std::vector<Vec3> form(places.begin(), places.end()), still(form.size());
+        std::vector<Vec3> ends[3];
+        for (const int copy : {0, 1, 2}) {
+            const auto other = copy == 0 ? nullptr : make_world(weightless());
+            World& in = other ? *other : *world;
+            const DeformableHandle same = other ? other->create_deformable(wire).value() : bent;
+            if (copy == 1) {
+                ASSERT_TRUE(in.set_lasting_deformation(same, lasting));
+                EXPECT_EQ(in.lasting_deformation(same).bend, lasting.bend);
+            }
+            ASSERT_TRUE(in.set_nodes(same, form, still));
+            for (int i = 0; i < 30; ++i) in.step();
+            ends[copy].assign(in.node_positions(same).begin(), in.node_positions(same).end());
+        }
+        double away[3] = {};
+        for (const int copy : {1, 2}) {
+            for (std::size_t i = 0; i < form.size(); ++i)
+                away[copy] = std::max(away[copy], length(ends[copy][i] - ends[0][i]));
+        }
+        EXPECT_LT(away[1], is_clamped ? 0.01 * away[2] : 1e-12) << seed;
+        EXPECT_GT(away[2], 0.003) << "without its bends it straightens";
+    }
+}
+
 TEST(LastingDeformation, ThatIsWrongIsRefusedAndChangesNothing) {
     const auto world = make_world();
     const DeformableHandle solid = world->create_deformable(clay_box()).value();
@@ -120,6 +168,7 @@ TEST(LastingDeformation, ThatIsWrongIsRefusedAndChangesNothing) {
     EXPECT_EQ(world->set_lasting_deformation(rope, {{}, {10}, {}}).error().where, "broken_segments");
     EXPECT_EQ(world->set_lasting_deformation(solid, {{}, {0}, {}}).error().where, "broken_segments");
     EXPECT_EQ(world->set_lasting_deformation(solid, {{}, {}, {{}}}).error().where, "bend");
+    EXPECT_EQ(world->set_lasting_deformation(rope, {{}, {}, {{}}}).error().where, "bend");
     EXPECT_TRUE(world->lasting_deformation(solid).plastic_strain.empty());
     EXPECT_TRUE(world->broken_segments(rope).empty());
 

@@ -24,15 +24,6 @@ constexpr std::uint32_t other_holder = 0xFFFFFFFEu;         // the slot of no bo
 
 double one_plus_cosine(Vec3 a, Vec3 b, double least) { return std::max(1 + dot(a, b), least); }
 
-Vec3 curvature_of(Vec3 a, Vec3 b, double fold_limit) { return (2 / one_plus_cosine(a, b, fold_limit)) * cross(a, b); }
-
-// By the smallest turn that takes the unit vector a to b.
-Vec3 carried(Vec3 v, Vec3 a, Vec3 b) {
-    constexpr double opposite = 1e-9;  // 1 + a·b below which no turn is the smallest: keeps the quotient finite
-    const Vec3 axis = cross(a, b);
-    return dot(a, b) * v + cross(axis, v) + (dot(axis, v) / one_plus_cosine(a, b, opposite)) * axis;
-}
-
 double nearest_turn(double angle, double to) { return angle + turn_around * std::round((to - angle) / turn_around); }
 
 Mat3 symmetric(const Mat3& m) { return 0.5 * (m + transpose(m)); }
@@ -66,8 +57,24 @@ bool RopeClamps::holds(std::size_t node) const {
     return std::ranges::any_of(held_, [node](const Held& held) { return held.clamp.node == node; });
 }
 
+std::optional<RopeClamps::Frame> RopeClamps::frame_at(std::size_t node, std::span<const BodyMove> body_moves) const {
+    const auto held = std::ranges::find(held_, node, [](const Held& h) { return h.clamp.node; });
+    if (held == held_.end()) return {};
+    return frame_of(*held, body_moves);
+}
+
+std::optional<RopeClamps::Frame> RopeClamps::start_frame_at(std::size_t node) const {
+    const auto held = std::ranges::find(held_, node, [](const Held& h) { return h.clamp.node; });
+    return held == held_.end() ? std::nullopt : std::optional(held->start);
+}
+
+std::uint32_t RopeClamps::body_at(std::size_t node) const {
+    const auto held = std::ranges::find(held_, node, [](const Held& h) { return h.clamp.node; });
+    return held == held_.end() ? no_body : held->body;
+}
+
 RopeClamps::Frame RopeClamps::frame_of(const Held& held, std::span<const BodyMove> body_moves) const {
-    if (held.body == no_body) return {held.axis, held.side};
+    if (held.body == no_body || body_moves.empty()) return {held.axis, held.side};
     const Quat turn = cayley(body_moves[held.body].turn);
     return {rotate(turn, held.axis), rotate(turn, held.side)};
 }
@@ -77,7 +84,7 @@ void RopeClamps::find_held(const Start& start, std::vector<Frame>& at_start) {
     const double begin = start.substep.time, end = begin + start.substep.h;
     held_.clear();
     for (const Clamp& clamp : clamps_) {
-        Held held{clamp, no_body, no_body, clamp.direction, any_perpendicular(clamp.direction)};
+        Held held{clamp, no_body, no_body, clamp.direction, any_perpendicular(clamp.direction), {}};
         Frame before{held.axis, held.side};
         if (!start.fixed[clamp.node]) {
             const auto& attachments = start.springs.attachments;
@@ -93,6 +100,7 @@ void RopeClamps::find_held(const Start& start, std::vector<Frame>& at_start) {
             held.axis = then * axis;
             held.side = then * side;
         }
+        held.start = before;
         held_.push_back(held);
         at_start.push_back(before);
     }
@@ -100,6 +108,7 @@ void RopeClamps::find_held(const Start& start, std::vector<Frame>& at_start) {
 
 void RopeClamps::find_bends(const Start& start, std::span<const Frame> at_start) {
     bends_.clear();
+    if (std::isfinite(start.rope.bend_yield)) return;  // of a wire: RopeFolds
     for (std::size_t i = 0; i < held_.size(); ++i) {
         const std::size_t node = held_[i].clamp.node;
         for (const std::size_t next : {node, node + 1}) {

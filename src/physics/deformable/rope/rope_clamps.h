@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_segment.h"
 #include "physics/deformable/rope/rope_system.h"
@@ -29,6 +31,16 @@ public:
     [[nodiscard]] bool holds_any() const { return !held_.empty(); }
     [[nodiscard]] bool holds(std::size_t node) const;
     [[nodiscard]] bool has_twist() const { return !spans_.empty(); }
+    /// How a clamp lies in the world: along the rope, and a vector across it.
+    struct Frame {
+        Vec3 axis, side;
+    };
+    /// Of a held node after these moves of the bodies (none: on the path of what holds it), since begin().
+    [[nodiscard]] std::optional<Frame> frame_at(std::size_t node, std::span<const BodyMove> body_moves) const;
+    /// When the substep began.
+    [[nodiscard]] std::optional<Frame> start_frame_at(std::size_t node) const;
+    /// The body that turns the node's clamp; no_body: none.
+    [[nodiscard]] std::uint32_t body_at(std::size_t node) const;
 
     /// Adds to the system about these moves. `with_curvature`: also the sideways forces of the moments on bent rope,
     /// which are positive definite only as long as the rope does not buckle.
@@ -52,6 +64,7 @@ private:
         Clamp clamp;
         std::uint32_t body = no_body, slot = no_body;  // no_body: the world
         Vec3 axis, side;                               // unit, at the substep's end on the body's path
+        Frame start;                                   // when it began
     };
     // Between a clamp and half of a segment at it.
     struct HalfBend {
@@ -71,9 +84,6 @@ private:
         std::uint32_t from = 0, to = 0;            // nodes
         std::uint32_t from_slot = 0, to_slot = 0;  // of the bodies
         double straight = 0, angle = 0;
-    };
-    struct Frame {
-        Vec3 axis, side;
     };
     // Directions along a span, those of its clamps first and last, and the curvature between each and the next.
     struct Bow {

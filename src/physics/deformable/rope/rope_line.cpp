@@ -20,7 +20,8 @@ constexpr double pi = 3.14159265358979323846;  // turns of Euler's load
 
 }  // namespace
 
-RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope>(definition.matter)) {
+RopeLine::RopeLine(const DeformableDefinition& definition)
+    : rope_(std::get<Rope>(definition.matter)), folds_(definition.nodes.size(), rope_.bend_rigidity, rope_.bend_yield) {
     const std::size_t count = definition.nodes.size();
     nodes_.mass.assign(count, 0);
     Vec3 center;
@@ -134,7 +135,8 @@ void RopeLine::begin_substep(double h) {
     for (std::size_t s = 0; s < segments_.size(); ++s)
         start_lengths_[s] = length(nodes_.position[s + 1] - nodes_.position[s]);
     bends_.assign(count, {});
-    for (std::size_t i = 1; i + 1 < count; ++i) {
+    if (folds_.is_active()) folds_.begin(corners(nodes_.position, start_frames()), rope_.rayleigh_damping / h);
+    for (std::size_t i = 1; i + 1 < count && !folds_.is_active(); ++i) {
         Bend& bend = bends_[i] = bend_at(i, nodes_.position);
         bend.damping = damping_of_growth(bend.turn, bend.stiffness * rope_.rayleigh_damping / h);
     }
@@ -142,6 +144,10 @@ void RopeLine::begin_substep(double h) {
 }
 
 double RopeLine::energy(const Substep& substep, std::span<const Vec3> moves) const {
+    return energy_without_folds(substep, moves) + fold_energy(moves, {});
+}
+
+double RopeLine::energy_without_folds(const Substep& substep, std::span<const Vec3> moves) const {
     const double h = substep.h;
     std::vector<Vec3> at(moves.size());
     double sum = 0;
@@ -172,7 +178,7 @@ double RopeLine::merit_pressed(const Substep& substep, std::span<const BodyInert
 
 double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> inertias, std::span<const Vec3> moves,
                        std::span<const BodyMove> body_moves, SpringEnergy spring_energy) const {
-    double sum = energy(substep, moves);
+    double sum = energy_without_folds(substep, moves) + fold_energy(moves, body_moves);
     for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves[b]);
     for (const TouchSpring& spring : springs_.springs()) sum += spring_energy(spring, moves, body_moves);
     for (const TouchSpring& spring : held_) sum += energy_of(spring, moves, body_moves);
@@ -227,8 +233,11 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
         system_.rhs[i] += flow.force({}, substep.time + h);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
-    for (std::size_t i = 1; i + 1 < count; ++i) add_curvature(i);
+    for (std::size_t i = 1; i + 1 < count && !folds_.is_active(); ++i) add_curvature(i);
     if (clamps_.holds_any()) clamps_.add(places_, moves_, body_moves_, with_curvature, system_);
+    if (folds_.is_active())
+        system_.add(folds_.rows(corners(places_, end_frames(body_moves_)), substep.settings.rope.fold_limit), moves_,
+                    body_moves_);
 }
 
 // One linear solve with springs, touched bodies and twists. Where the moments exceed what the bent rope bears, without
@@ -261,6 +270,13 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     if (merit(substep, inertias, rest, body_moves_) < merit(substep, inertias, moves_, body_moves_)) {
         moves_ = rest;
         assemble(substep);
+    }
+    if (folds_.is_active()) {
+        const std::vector<Vec3> turned = unstretched_moves(substep.h);
+        if (merit(substep, inertias, turned, body_moves_) < merit(substep, inertias, moves_, body_moves_)) {
+            moves_ = turned;
+            assemble(substep);
+        }
     }
     // Of iterations that do not converge, the moves with the smallest residual.
     std::vector<Vec3> best_moves = moves_;
@@ -315,6 +331,7 @@ void RopeLine::go_on_from(const RopeLine& other) {
     clamps_ = other.clamps_;
     clamps_.set(own);
     springs_.go_on_from(other.springs_);
+    folds_.go_on_from(other.folds_);
 }
 
 void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contacts,
@@ -341,6 +358,13 @@ LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> mov
     for (std::size_t k = 0; k < system_.twists.size() && moments_.size() == system_.twists.size(); ++k) {
         for (std::size_t i = 0; i < system_.rhs.size(); ++i)
             system_.rhs[i] -= moments_[k] * system_.twists[k].by_node[i];
+    }
+    // Folds too: what turns about the rope itself is no unknown here.
+    if (folds_.is_active()) {
+        const auto rows = folds_.rows(corners(places_, end_frames(body_moves_)), substep.settings.rope.fold_limit);
+        FoldGradient twisting(nodes_.size(), 0);
+        twisting.add_links(rows);
+        for (std::size_t i = 0; i < system_.rhs.size(); ++i) system_.rhs[i] -= twisting.by_node[i];
     }
     const double least = std::max(length(substep.gravity), substep.settings.thin_contact.min_gravity);  // m/s²
     small_load_.resize(nodes_.size());
@@ -411,6 +435,7 @@ void RopeLine::finish(const Substep& substep, std::span<Vec3> moves, std::span<c
     springs_.finish(moves, body_moves, substep, bodies, fractions);
     if (!clamps_.holds_any()) return;
     for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = nodes_.position[i] + moves[i];
+    if (folds_.is_active()) push_by_folds(substep, body_moves, bodies);
     clamps_.finish(places_, body_moves, substep.h, bodies);
 }
 
@@ -418,6 +443,7 @@ void RopeLine::move_nodes(std::span<const Vec3> moves, double h) {
     if (is_frozen_) return;
     set_velocities(nodes_, moves, h);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves[i];
+    if (folds_.is_active()) folds_.keep(corners(nodes_.position, end_frames(body_moves_)));
     break_segments();
 }
 
@@ -427,10 +453,11 @@ double RopeLine::elastic_energy() const {
         if (segments_[s].is_broken) continue;
         energy += tension_at(s, length(nodes_.position[s + 1] - nodes_.position[s])).energy;
     }
-    for (std::size_t i = 1; i + 1 < nodes_.size(); ++i) {
+    for (std::size_t i = 1; i + 1 < nodes_.size() && !folds_.is_active(); ++i) {
         const Bend bend = bend_at(i, nodes_.position);
         energy += bend.stiffness / 2 * length_squared(bend.turn);
     }
+    if (folds_.is_active()) energy += folds_.elastic_energy(corners(nodes_.position, end_frames(body_moves_)));
     return energy + clamps_.elastic_energy();
 }
 

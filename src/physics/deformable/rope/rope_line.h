@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/support_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_clamps.h"
+#include "physics/deformable/rope/rope_folds.h"
 #include "physics/deformable/rope/rope_system.h"
 
 namespace embody::physics::deformable {
@@ -74,6 +77,8 @@ public:
     [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
     /// Takes over broken segments, twists and contacts from another rope of as many segments.
     void go_on_from(const RopeLine& other);
+    [[nodiscard]] RopeFolds& folds() { return folds_; }
+    [[nodiscard]] const RopeFolds& folds() const { return folds_; }
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;
     /// True once a number was non-finite: the rope stays where it last was.
@@ -113,6 +118,15 @@ private:
     [[nodiscard]] Tension damped_tension_at(std::size_t segment, double length, double h) const;
     void begin_substep(double h);
     [[nodiscard]] Bend bend_at(std::size_t node, std::span<const Vec3> positions) const;
+    [[nodiscard]] double energy_without_folds(const Substep& substep, std::span<const Vec3> moves) const;
+    [[nodiscard]] double fold_energy(std::span<const Vec3> moves, std::span<const BodyMove> body_moves) const;
+    // How clamps lie, by node.
+    using Frames = std::function<std::optional<RopeClamps::Frame>(std::size_t)>;
+    [[nodiscard]] Frames start_frames() const;
+    [[nodiscard]] Frames end_frames(std::span<const BodyMove> body_moves) const;
+    [[nodiscard]] std::vector<RopeCorner> corners(std::span<const Vec3> positions, const Frames& frames) const;
+    [[nodiscard]] std::vector<Vec3> unstretched_moves(double h) const;
+    void push_by_folds(const Substep& substep, std::span<const BodyMove> body_moves, std::span<TouchedBody> bodies);
 
     Rope rope_;
     Nodes nodes_;
@@ -121,6 +135,7 @@ private:
     TouchSprings springs_;
     SupportSprings supports_;  // of the bodies that it pushes, where it is solved alone
     RopeClamps clamps_;
+    RopeFolds folds_;
     std::vector<double> tensions_;
     std::vector<Break> new_breaks_;
 

@@ -12,6 +12,21 @@ void RopeSystem::reset(std::size_t nodes) {
     couplings.clear();
     turns.clear();
     twists.clear();
+    folds_.clear();
+}
+
+void RopeSystem::add(std::vector<FoldRow> folds, std::span<const Vec3> moves, std::span<const BodyMove> body_moves) {
+    folds_ = std::move(folds);
+    for (FoldRow& row : folds_) {
+        const std::size_t count = std::min(row.by_node.size(), rhs.size() - row.first_node);
+        for (std::size_t k = 0; k < count; ++k) row.residual -= dot(row.by_node[k], moves[row.first_node + k]);
+        if (row.body != no_body) row.residual -= dot(row.by_turn, body_moves[row.body].turn);
+        for (std::size_t r = 0; r < count && !row.is_link; ++r) {
+            rhs[row.first_node + r] -= row.weight * row.residual * row.by_node[r];
+            for (std::size_t c = 0; c <= r; ++c)
+                band.add(row.first_node + r, row.first_node + c, row.weight * outer(row.by_node[r], row.by_node[c]));
+        }
+    }
 }
 
 // Springs between nodes go into the band; the bodies that others touch become unknowns.
@@ -46,6 +61,14 @@ void RopeSystem::order_unknowns(std::span<const TouchSpring> springs, const std:
         for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) touch(spring.body, spring.node[a]);
     }
     for (const TurnCoupling& coupling : couplings) touch(coupling.body, coupling.node);
+    angle_row_.assign(nodes, none);
+    for (const FoldRow& row : folds_) {
+        for (const std::size_t angle : row.angle) {
+            if (angle != FoldRow::none) angle_row_[angle] = 0;
+        }
+        for (std::size_t k = 0; k < row.by_node.size() && row.first_node + k < nodes; ++k)
+            touch(row.body, row.first_node + k);
+    }
 
     std::ranges::stable_sort(moving_, {}, [&](std::uint32_t body) { return last_node_[body]; });
     node_row_.resize(nodes);
@@ -57,6 +80,10 @@ void RopeSystem::order_unknowns(std::span<const TouchSpring> springs, const std:
     for (std::size_t node = 0; node < nodes; ++node) {
         node_row_[node] = first_column_.size();
         add_rows(3, node_row_[node < 2 ? 0 : node - 2]);
+        if (node > 0 && angle_row_[node - 1] != none) {
+            angle_row_[node - 1] = first_column_.size();
+            add_rows(1, node_row_[node < 2 ? 0 : node - 2]);
+        }
         for (; next < moving_.size() && last_node_[moving_[next]] == node; ++next) {
             const std::uint32_t body = moving_[next];
             body_row_[body] = first_column_.size();
@@ -121,6 +148,42 @@ void RopeSystem::fill_matrix(std::span<const TouchSpring> springs, std::span<con
     }
 }
 
+// What couples the folds' nodes, angles and bodies; nodes alone of links only, see add().
+void RopeSystem::fill_folds(const std::vector<bool>& fixed) {
+    // Stiffness of an angle that nothing bends, over that of its links: keeps the matrix definite. Test:
+    // Wire.AStraightWireFliesOn
+    constexpr double least = 1e-9;
+    struct Part {
+        std::size_t row = 0;
+        double value = 0;
+        bool is_node = false;
+    };
+    std::vector<Part> parts;
+    for (const FoldRow& fold : folds_) {
+        parts.clear();
+        const auto add = [&](std::size_t row, Vec3 value, bool is_node) {
+            for (std::size_t k = 0; k < 3; ++k) parts.push_back({row + k, value[static_cast<int>(k)], is_node});
+        };
+        for (std::size_t k = 0; k < fold.by_node.size() && fold.first_node + k < fixed.size(); ++k) {
+            if (!fixed[fold.first_node + k]) add(node_row_[fold.first_node + k], fold.by_node[k], true);
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (fold.angle[k] == FoldRow::none) continue;
+            parts.push_back({angle_row_[fold.angle[k]], fold.by_angle[k]});
+            if (fold.is_link) matrix_.at(parts.back().row, parts.back().row) += least * fold.weight;
+        }
+        if (moves(fold.body)) add(body_row_[fold.body] + 3, fold.by_turn, false);
+        for (const Part& a : parts) {
+            if (!a.is_node || fold.is_link) values_[a.row] -= fold.weight * fold.residual * a.value;
+            for (const Part& b : parts) {
+                if (b.row > a.row || b.value == 0 || a.value == 0 || (a.is_node && b.is_node && !fold.is_link))
+                    continue;
+                matrix_.at(a.row, b.row) += fold.weight * a.value * b.value;
+            }
+        }
+    }
+}
+
 // With F for all but the twists, G of their derivatives by the unknowns and K of their stiffnesses:
 //   F x + G y = b,  y = K (offset + Gᵀ x)  →  (K⁻¹ + Gᵀ F⁻¹ G) y = offset + Gᵀ F⁻¹ b,  x = F⁻¹ (b - G y).
 bool RopeSystem::solve_twists(const std::vector<bool>& fixed, std::vector<double>& moments) {
@@ -169,6 +232,7 @@ bool RopeSystem::solve(std::span<const TouchSpring> springs, std::span<const Bod
     }
     order_unknowns(springs, fixed);
     fill_matrix(springs, inertias, fixed);
+    fill_folds(fixed);
     if (!matrix_.factorize()) return false;
     matrix_.solve(values_);
     moments.assign(twists.size(), 0);
