@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Writes the demo scenes that are made of formulas into data/scenes: a house of cards, a pool table, a spiral of dominoes, a wrecking
 ball, Newton's cradle, a trampoline, plates that break, a basin with tap and drain, tongues of sheet metal, an awning
-under a tap, beach balls, ice that melts, paper that tears. The others there were built by hand.
+under a tap, beach balls, ice that melts, paper that tears, wires. The others there were built by hand.
 
 Usage: make_demo_scenes.py [FOLDER]
 """
@@ -297,6 +297,25 @@ def torn_paper() -> dict:
     return scene("Torn paper", "A ball is thrown at a sheet of paper and at one of cotton. Tear strength and Tear energy in the panel make the difference.", [1.15, 1.75, 2.3], [0, 0.9, -0.2], entities)
 
 
+def wires() -> dict:
+    """Two steel wires of 3 mm, clamped at one end, with a ball of 0.3 kg at the other that is taken away after 4 s: spring steel goes back, soft steel stays bent.
+
+    E pi d4 / 64 = 0.8 N m2 at 200 GPa; soft steel flows at 250 MPa * d3 / 6 / 0.8 N m2 = 1.4 1/m. EA is less than 1.4 MN, since nothing here stretches the wires."""
+    height, half = 0.7, 0.25
+    entities = [fixed("Floor", [3, 0.1, 3], [0, -0.1, 0], [0.6, 0.6, 0.62]), fixed("Clamp", [0.05, height / 2 + 0.02, 0.35], [-half - 0.05, height / 2 + 0.02, 0], [0.3, 0.32, 0.36])]
+    actions = []
+    for z, name, color, limit in ((-0.2, "Spring steel", [0.13, 0.22, 0.5], {}), (0.2, "Soft steel", [0.7, 0.26, 0.1], {"bend_yield": 1.4})):
+        entities.append(sphere("Ball", 0.025, [half, height, z], hue(z), attributes={"mass": 0.3, "restitution": 0}))
+        ball = len(entities)
+        entities.append({"name": name, "shape": {"type": "capsule", "radius": 0.0015, "half_height": half}, "color": color, "category": "wire",
+                         "pose": {"position": [0, height, z], "rotation": turn([0, 0, 1], 90)},
+                         "pins": [{"position": [0, half, 0], "radius": 0.012, "clamped": True}, {"position": [0, -half, 0], "radius": 0.012, "to": ball}],
+                         "attributes": {"kind": "rope", "linear_density": 0.055, "axial_stiffness": 1e5, "bend_rigidity": 0.8, "rope_segments": 25, "damping_rayleigh": 0.05, **limit}})
+        actions.append({"name": "take the ball away", "trigger": {"type": "time", "time": 4}, "receiver": {"index": ball}, "effect": {"type": "remove"}})
+    return scene("Wires", "A ball bends each of two steel wires and is taken away after 4 s. Spring steel goes back, soft steel stays bent. The difference is the Fold limit in the panel.",
+                 [0.45, 0.85, 0.85], [-0.02, 0.56, 0], entities, actions=actions)
+
+
 def awning() -> dict:
     """A cloth between four posts over a tub, on which a tap pours 8 litres in 8 s: they gather in its sag and drip through."""
     half, height, tub, rim, wall = 0.4, 0.9, 0.22, 0.1, 0.02
@@ -370,7 +389,7 @@ def melting_ice() -> dict:
 
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "scenes"
-    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls, melting_ice, torn_paper):
+    for make in (card_house, pool_table, domino_spiral, wrecking_ball, newtons_cradle, trampoline, breaking_plates, basin, sheet_metal, awning, beach_balls, melting_ice, torn_paper, wires):
         (folder / f"{make.__name__}.json").write_text(json.dumps(make(), ensure_ascii=False, indent=1) + "\n")
     return 0
 

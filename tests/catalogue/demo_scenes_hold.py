@@ -260,6 +260,16 @@ def torn_paper(run: Run):
         yield from within(f"nodes that {name} got by tearing", len(run.points(index)) - len(run.points(index, run.first)), low, high)
 
 
+def wires(run: Run):
+    # Under 0.3 kg both hang down; without it one is straight but for its own weight, 5 mm.
+    loaded = run.seconds[4]
+    ends = {name: [run.points(run.called(name)[0], line)[0][1] for line in (loaded, run.last)] for name in ("Spring steel", "Soft steel")}
+    yield from within("end of the loaded spring steel", ends["Spring steel"][0], 0.52, 0.59)
+    yield from within("end of the spring steel", ends["Spring steel"][1], 0.69, 0.7)
+    yield from within("end of the loaded soft steel", ends["Soft steel"][0], 0.3, 0.45)
+    yield from within("end of the soft steel", ends["Soft steel"][1], 0.42, 0.55)
+
+
 def beach_balls(run: Run):
     # Blown up they keep their form; a balloon that a box lies on is pressed flat where it touches only.
     for name, size in (("Exercise ball", 0.64), ("Beach ball", 0.34)):
@@ -304,6 +314,7 @@ SCENES = {
     "tablecloth": (14, True, tablecloth),
     "torn_paper": (4, False, torn_paper),
     "trampoline": (4, False, trampoline),
+    "wires": (8, True, wires),
     "wrecking_ball": (5, False, wrecking_ball),
 }
 

@@ -13,7 +13,7 @@ const SCENES = join(root, "data", "scenes");
 const PICTURES = join(root, "studio", "public", "gallery");
 const [WIDTH, HEIGHT] = [640, 400];
 /** Simulated seconds until the picture; one second where nothing is said. */
-const MOMENTS = { awning: 7, basin: 9.5, bathtub: 1.2, beach_balls: 0.55, breaking_plates: 0.75, card_house: 0, domino_spiral: 7, dominoes: 1, furnished_room: 1, honey_on_bread: 2, hourglass: 1.5, melting_ice: 5.13, newtons_cradle: 0.5, pool_table: 0.45, sheet_metal: 1.5, stack_of_boxes: 0, tablecloth: 2.5, torn_paper: 0.42, trampoline: 0.75, wrecking_ball: 1.15 };
+const MOMENTS = { awning: 7, basin: 9.5, bathtub: 1.2, beach_balls: 0.55, breaking_plates: 0.75, card_house: 0, domino_spiral: 7, dominoes: 1, furnished_room: 1, honey_on_bread: 2, hourglass: 1.5, melting_ice: 5.13, newtons_cradle: 0.5, pool_table: 0.45, sheet_metal: 1.5, stack_of_boxes: 0, tablecloth: 2.5, torn_paper: 0.42, trampoline: 0.75, wires: 3, wrecking_ball: 1.15 };
 
 const program = findProgram();
 if (!program) throw new Error("the program embody is not built");

@@ -54,8 +54,12 @@ SharedOptional<KeptForm> Simulation::kept_form(EntityIndex index) const {
     entity->points->read(positions);
     if (positions.empty() && !keeps_nothing(*entity)) return {};
     const SoftNodes* soft = as_soft(entity->points.get());
-    return form_of(*entity, std::move(positions), state_->pose_of(*entity),
-                   soft ? soft->lasting_deformation() : physics::LastingDeformation{});
+    physics::LastingDeformation lasting = soft ? soft->lasting_deformation() : physics::LastingDeformation{};
+    // A wire's clamps take the direction that it has when a run begins: it is not bent against them then.
+    if (soft != nullptr && std::holds_alternative<physics::Rope>(soft->definition().matter)) {
+        for (auto& bend : lasting.bend) std::fill(bend.begin() + 2, bend.end(), 0.0);
+    }
+    return form_of(*entity, std::move(positions), state_->pose_of(*entity), lasting);
 }
 
 SharedOptional<KeptForm> Simulation::kept_form(const EntityMoment& was, std::vector<std::uint32_t> broken) const {

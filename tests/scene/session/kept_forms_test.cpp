@@ -59,6 +59,21 @@ EntityIndex fallen_rope(Document& document, Random& random) {
     return rope.index;
 }
 
+// Clamped in a wall it is bent by its weight.
+EntityIndex bent_wire(Document& document, Random& random) {
+    const double half = random.between(0.2, 0.3);
+    Entity& wire = add(document, "Wire", CapsuleShape{0.002, half}, {0, 1, 0}, PhysicalKind::rope,
+                       {{"mass", random.between(0.05, 0.15)},
+                        {"bend_rigidity", 0.1},
+                        {"bend_yield", random.between(0.5, 2)},
+                        {"damping_rayleigh", 0.1},
+                        {"rope_segments", std::floor(random.between(15, 30))}});
+    wire.pose.rotation =
+        from_axis_angle({0, 1, 0}, random.between(-3, 3)) * from_axis_angle({0, 0, 1}, random.between(1, 2));
+    wire.pins = {{{0, half, 0}, 0.01, {}, true}};
+    return wire.index;
+}
+
 EntityIndex pressed_cushion(Document& document, Random& random) {
     const Vec3 half{random.between(0.15, 0.25), random.between(0.08, 0.12), random.between(0.15, 0.25)};
     const EntityIndex cushion = add(document, "Cushion", BoxShape{half}, {0, half.y + 0.01, 0}, PhysicalKind::soft,
@@ -106,7 +121,8 @@ EntityIndex settled_water(Document& document, Random& random) {
 const Family families[] = {
     {"cloth", draped_cloth, 600, 4e-3, 4e-3, 0.1},        {"rope", fallen_rope, 600, 3e-4, 3e-4, 0.1},
     {"cushion", pressed_cushion, 300, 5e-5, 5e-5, 0.005}, {"clay", dented_clay, 360, 2e-4, 2e-4, 0.001},
-    {"sand", pile_of_sand, 600, 3e-4, 3e-4, 0.005},       {"water", settled_water, 900, 1e-3, 5e-3, 0.02},
+    {"wire", bent_wire, 600, 5e-3, 5e-3, 0.01},           {"sand", pile_of_sand, 600, 3e-4, 3e-4, 0.005},
+    {"water", settled_water, 900, 1e-3, 5e-3, 0.02},
 };
 
 class KeptForms : public SessionTest, public testing::WithParamInterface<Family> {
