@@ -4,7 +4,7 @@ import type { ElementFinder } from "./element_finder";
 import { addBetween, divide, EDGE_KEY_STEP, geometryOf, numbersOf } from "./refine";
 
 /** A drawn edge is halved so often to find where it crosses a tear. */
-const HALVINGS = 12;
+const HALVINGS = 8;
 /** A crossing nearer to an end of its edge than this share of it is moved there: no slivers. */
 const NEAR_END = 0.05;
 
