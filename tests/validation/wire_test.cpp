@@ -67,12 +67,12 @@ BodyHandle weight_at(World& world, Vec3 place, double mass) {
         .value();
 }
 
-Vec3 random_vector(Random& random, double most) {
+Vec3 random_vector(embody::Random& random, double most) {
     return {random.between(-most, most), random.between(-most, most), random.between(-most, most)};
 }
 
 /// Each fifth node is a corner in a random direction, of 17 to 52 degrees: far beyond a limit of a few 1/m.
-std::vector<Vec3> bent_places(Random& random, std::size_t count) {
+std::vector<Vec3> bent_places(embody::Random& random, std::size_t count) {
     std::vector<Vec3> places{{0, 0, 0}};
     Vec3 direction{1, 0, 0};
     for (std::size_t k = 1; k < count; ++k) {
@@ -96,7 +96,7 @@ std::vector<Vec3> hook_places(std::size_t count) {
 
 // A bend of curvature κ springs back by the yield curvature: to κ - κ_y, and to nothing below it.
 TEST(Wire, SpringsBackByWhatItBearsElastically) {
-    Random random(1);
+    embody::Random random(1);
     for (int i = 0; i < 8; ++i) {
         const auto world = make_world({.gravity = {}, .air_density = 0});
         const double yield = random.between(1, 4), bent = random.between(0.5, 3) * yield;
@@ -113,7 +113,7 @@ TEST(Wire, SpringsBackByWhatItBearsElastically) {
 
 // Bent at random places in random directions it keeps its form where it flies and turns, and gains no energy.
 TEST(Wire, ABentWireKeepsItsFormInFlight) {
-    Random random(2);
+    embody::Random random(2);
     for (int i = 0; i < 8; ++i) {
         const auto world = make_world({.gravity = {}, .air_density = 0});
         const DeformableDefinition definition = straight_wire(2);
@@ -144,7 +144,7 @@ TEST(Wire, ABentWireKeepsItsFormInFlight) {
 
 // With next to no damping it swings in itself, and yields: all of that takes energy.
 TEST(Wire, SwingsAndYieldsWithoutAGain) {
-    Random random(5);
+    embody::Random random(5);
     for (int i = 0; i < 8; ++i) {
         const auto world = make_world({.gravity = {}, .time_step = 1.0 / 240, .air_density = 0});
         Rope rope = steel(random.between(1, 4));
@@ -195,7 +195,7 @@ TEST(Wire, AHookInAWallStaysAsItPoints) {
 // What is left without the weight is what was beyond the curvature that the moment bears; at the wall, where nothing is
 // unloaded as it goes down, beyond κ_y.
 TEST(Wire, ACantileverKeepsWhatIsBeyondItsLimit) {
-    Random random(3);
+    embody::Random random(3);
     int yielded = 0;
     for (int i = 0; i < 6; ++i) {
         const auto world = make_world({.air_density = 0});
@@ -235,7 +235,7 @@ TEST(Wire, ACantileverKeepsWhatIsBeyondItsLimit) {
 
 // A hook on a body turns with it, also about the wire's own axis, and each has the moment of the other.
 TEST(Wire, AHookTurnsTheBodyThatItTurnsWith) {
-    Random random(4);
+    embody::Random random(4);
     for (int i = 0; i < 4; ++i) {
         const auto world = make_world({.gravity = {}, .time_step = 1.0 / 240, .air_density = 0});
         DeformableDefinition definition = straight_wire(3);
@@ -271,7 +271,7 @@ TEST(Wire, AHookTurnsTheBodyThatItTurnsWith) {
 
 // Bent between two clamps, of which one turns it about itself: it has the twist and comes to rest.
 TEST(Wire, BetweenClampsItIsTwistedAndComesToRest) {
-    Random random(6);
+    embody::Random random(6);
     for (int i = 0; i < 4; ++i) {
         const auto world = make_world({.air_density = 0});
         DeformableDefinition definition = straight_wire(random.between(1, 4));
@@ -298,7 +298,7 @@ TEST(Wire, BetweenClampsItIsTwistedAndComesToRest) {
 
 // Nothing of it says how it is turned about itself.
 TEST(Wire, AStraightWireFliesOn) {
-    Random random(7);
+    embody::Random random(7);
     for (int i = 0; i < 20; ++i) {
         const auto world = make_world({.gravity = {}, .air_density = 0});
         const Vec3 end = random_vector(random, 1);
