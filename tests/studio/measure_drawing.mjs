@@ -3,15 +3,14 @@
 // not a test.
 // Usage (in studio/): node ../tests/studio/measure_drawing.mjs DATABASE [COUNT=200] [QUALITY=low] [PICTURE.png]
 // EMBODY_PROGRAM names the program. The models stand in rows as in a large shop, 2.2 m apart; the camera goes slowly past them.
-import { readFileSync, readdirSync } from "node:fs";
 import { openBrowser, openStudio, takePicture } from "./browser.mjs";
+import { browserTime } from "./processor_time.mjs";
 import { findProgram, RealServer } from "./real_server.mjs";
 import { commandFrom } from "./session.mjs";
 
 const [database, count = "200", quality = "low", picture] = process.argv.slice(2);
 const PICTURES = 30;
 const SPACING = 2.2;
-const TICKS_A_SECOND = 100;
 
 const server = new RealServer(findProgram(), database);
 const address = await server.start({ embody_scene: 1, title: "Empty", entities: [] });
@@ -43,28 +42,6 @@ await commandFrom(page, "scene.load", { scene });
 await page.waitForFunction((all) => window.embody.entities().length === all && window.embody.loading() === 0, wanted + 1, { timeout: 600000 });
 const loaded = performance.now() - before;
 
-/** Processor time so far, s, of the processes of our browser, by their kind. */
-function processorTime() {
-  const times = { gpu: 0, page: 0 };
-  for (const name of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
-    try {
-      const command = readFileSync(`/proc/${name}/cmdline`, "utf8");
-      const kind = /--type=gpu-process/.test(command) ? "gpu" : /--type=renderer/.test(command) ? "page" : null;
-      if (!kind || !isOurs(name)) continue;
-      const fields = readFileSync(`/proc/${name}/stat`, "utf8").split(") ")[1].split(" ");
-      times[kind] += (Number(fields[11]) + Number(fields[12])) / TICKS_A_SECOND;
-    } catch {
-      // A process that has just ended.
-    }
-  }
-  return times;
-}
-
-function isOurs(pid) {
-  for (let at = pid; Number(at) > 1; at = readFileSync(`/proc/${at}/stat`, "utf8").split(") ")[1].split(" ")[1]) if (Number(at) === process.pid) return true;
-  return false;
-}
-
 /** Draws so many pictures, each from a little further on, and waits for each. */
 const pass = (pictures) => page.evaluate((pictures) => window.embody.measure(pictures), pictures);
 
@@ -72,9 +49,9 @@ await pass(5);
 for (const full of [false, true]) {
   await page.evaluate((full) => window.embody.showFullDetail(full), full);
   await pass(2);
-  const [start, heap] = [processorTime(), await page.evaluate(() => performance.memory.usedJSHeapSize)];
+  const [start, heap] = [browserTime(), await page.evaluate(() => performance.memory.usedJSHeapSize)];
   const bytes = await pass(PICTURES);
-  const end = processorTime();
+  const end = browserTime();
   const ms = (kind) => Math.round((1000 * (end[kind] - start[kind])) / PICTURES);
   const drawn = await page.evaluate(() => window.embody.drawn());
   console.log(JSON.stringify({ models: wanted, quality, full, gpu_ms: ms("gpu"), page_ms: ms("page"), ...drawn, heap_mb: Math.round(heap / 1048576), bytes_a_picture: bytes, loaded_s: +(loaded / 1000).toFixed(1) }));
