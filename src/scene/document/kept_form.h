@@ -57,7 +57,8 @@ inline constexpr auto fields_of<KeptForm> = std::tuple{
     saved_when_set(
         "bend", &KeptForm::bend,
         "of a sheet: the curvature that friction holds, xx, yy and √2 xy of each triangle, x along the warp, "
-        "then that of folds that stay",
+        "then that of folds that stay. Of a wire: six numbers of each node, its folds at the node, before and behind a "
+        "clamp, each along two axes across the wire, times its length",
         {.unit = "1/m"}),
     saved_when_set("torn", &KeptForm::torn,
                    "of a sheet: where it has torn, in the order of time. Three numbers each: a corner, 3 t + k of "

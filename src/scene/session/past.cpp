@@ -61,6 +61,7 @@ void Past::clear() {
     removed.clear();
     melted.clear();
     fired.clear();
+    torn.clear();
     breaks.clear();
     if (shown) ++jumps;
     shown.reset();

@@ -60,6 +60,8 @@ struct Past {
         std::uint32_t segment = 0;
         double time = 0;  ///< s
     };
+    /// What had torn of a sheet when it tore last in this run, also where it is gone since.
+    std::map<EntityIndex, std::vector<physics::TornCorner>> torn;
     std::vector<Break> breaks;                     ///< of ropes in this run, by time
     std::optional<Moment> shown;                   ///< empty: what is now
     std::uint64_t jumps = 0;                       ///< how often something else was shown

@@ -15,7 +15,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double marked_speed = 0.3;  // m/s: slower contacts are no event of a run
+constexpr double marked_speed = 0.3;   // m/s: slower contacts are no event of a run
+constexpr double tear_seconds = 0.25;  // s: tears of a sheet that follow each other sooner are one event
 constexpr auto told_period = std::chrono::milliseconds(250);
 
 Error no_take(const char* command) {
@@ -60,8 +61,15 @@ void SessionState::record_step() {
         past.breaks.push_back({rope, broke.segment, time});
         past.marks.add({time, Mark::Kind::rope, rope});
     }
-    for (const physics::SheetTearEvent& tore : simulation->sheet_tears())
-        past.marks.add({time, Mark::Kind::tear, static_cast<EntityIndex>(tore.user_data)});
+    for (const physics::SheetTearEvent& tore : simulation->sheet_tears()) {
+        const auto sheet = static_cast<EntityIndex>(tore.user_data);
+        if (const SoftNodes* soft = as_soft(simulation->points(sheet)))
+            past.torn[sheet] = soft->lasting_deformation().torn_corners;
+        const auto is_one_tear = [&](const Mark& mark) {
+            return mark.kind == Mark::Kind::tear && mark.a == sheet && mark.time > time - tear_seconds;
+        };
+        if (std::ranges::none_of(past.marks.all(), is_one_tear)) past.marks.add({time, Mark::Kind::tear, sheet});
+    }
     const auto is_marked = [](const physics::ContactEvent& event) {
         return event.user_data_a != event.user_data_b && event.approach_speed >= marked_speed;
     };
@@ -147,8 +155,11 @@ Result<std::vector<std::string>> SessionState::branch() {
         if (is_before(entry)) done.fired.insert(entry.first);
 
     for (const EntityMoment& was : moment.entities) {
-        const SoftNodes* soft = as_soft(simulation->points(was.motion.entity));
-        if (soft != nullptr && was.points) done.torn[was.motion.entity] = soft->torn_corners(was.points->count());
+        const auto torn = past.torn.find(was.motion.entity);
+        if (torn == past.torn.end() || !was.points) continue;
+        // What tore later made nodes of higher numbers.
+        std::erase_if(torn->second, [&](const auto& corner) { return corner.node >= was.points->count(); });
+        done.torn.insert(*torn);
     }
 
     Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms, MissingModels::wait);
@@ -164,6 +175,15 @@ Result<std::vector<std::string>> SessionState::branch() {
                (std::holds_alternative<SetAttribute>(action.effect) || std::holds_alternative<SetOpen>(action.effect) ||
                 std::holds_alternative<SetEnabled>(action.effect) || std::holds_alternative<ApplyForce>(action.effect));
     });
+    const auto soft_now = [&](const EntityMoment& was) { return as_soft(made.value()->points(was.motion.entity)); };
+    const bool wires = std::ranges::any_of(moment.entities, [&](const EntityMoment& was) {
+        const SoftNodes* before = as_soft(simulation->points(was.motion.entity));
+        const SoftNodes* soft = soft_now(was);
+        return before != nullptr && soft != nullptr &&
+               std::holds_alternative<physics::Rope>(soft->definition().matter) &&
+               !before->lasting_deformation().bend.empty() && soft->lasting_deformation().bend.empty();
+    });
+    if (wires) notes.emplace_back("wires that had been bent are straight again");
     if (values) notes.emplace_back("what actions had set or still pushed is as in the scene again");
 
     simulation = std::move(made).value();
