@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/deformable/contact/free_motion.h"
+
 namespace embody::physics::state {
 
 namespace {
@@ -146,6 +148,14 @@ void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<con
     std::ranges::copy(positions, all.position.begin());
     for (std::size_t i = 0; i < all.size(); ++i)
         all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
+    all.substep = 0;
+}
+
+void DeformableRecord::begin_substep(double h, Vec3 gravity, bool is_alone) {
+    Nodes& all = thin_nodes(*this);
+    const bool is_dry = all.flow.empty() && all.force.empty();
+    const bool is_free = is_alone && is_dry && (cloth() ? cloth()->is_free() : rope()->is_free());
+    change_substep(all, h, acceleration(gravity), is_free);
 }
 
 void DeformableRecord::set_liquid_force(std::span<const Vec3> force) {

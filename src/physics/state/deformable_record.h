@@ -91,6 +91,8 @@ struct DeformableRecord {
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no
     /// velocity.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Before a substep of h seconds of a sheet or rope, alone in its group or not; see change_substep().
+    void begin_substep(double h, Vec3 gravity, bool is_alone);
     /// Sets the forces of liquids on the nodes, N; empty: none.
     void set_liquid_force(std::span<const Vec3> force);
     /// Sets the flow around a sheet's or rope's nodes; empty: none.

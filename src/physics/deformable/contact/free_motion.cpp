@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/free_motion.h"
 
+#include <cmath>
+
+#include "math/quat.h"
+
 namespace embody::physics::deformable {
 
+namespace {
+
+// Of the whole inertia, about any axis: a straight line has none about itself, and rounding leaves 1e-15 of it.
+constexpr double line_inertia = 1e-9;
+
+}  // namespace
+
 void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings) {
-    constexpr double line_inertia = 1e-9;  // of the whole inertia: rounding leaves 1e-15 of it about a straight line
     // Calls `use` with mass (kg), place (m), momentum with what is given (N s) and move of each node.
     const auto for_each_node = [&](auto&& use) {
         for (const FreePart& part : parts) {
@@ -36,7 +46,6 @@ void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSe
             missing -= m * cross(arm, move / h - mean);
             inertia += m * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
         });
-        // A straight line has no inertia about itself.
         inertia += line_inertia * trace(inertia) * Mat3::identity();
         const Vec3 spin = solve(inertia, missing);
         if (!is_finite(spin) || length(spin) * h > settings.max_momentum_turn) return;
@@ -84,7 +93,25 @@ WholeMotion motion_of_whole(const Nodes& nodes) {
         turning += cross(arm, nodes.mass[i] * nodes.mean_velocity[i]);
         inertia += nodes.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
     }
+    inertia += line_inertia * trace(inertia) * Mat3::identity();
     return {momentum / mass, solve(inertia, turning), mass, center, inertia};
+}
+
+void change_substep(Nodes& nodes, double h, Vec3 acceleration, bool is_free) {
+    const double back = (h - nodes.substep) / 2;
+    const bool is_new = nodes.substep == 0;
+    nodes.substep = h;
+    if (back == 0 || !(is_new || is_free)) return;
+    // A node that turns with the whole has, over an angle of 2 x, the mean velocity of the middle times sin x / x.
+    const WholeMotion whole = motion_of_whole(nodes);
+    const double angle = is_free && is_finite(whole.spin) ? length(whole.spin) * back : 0;
+    const double chord = is_new && angle != 0 ? std::sin(angle) / angle : 1;
+    const Quat turn = from_axis_angle(normalized(whole.spin, {0, 1, 0}), -angle);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!(nodes.inverse_mass[i] > 0)) continue;
+        const Vec3 turning = cross(whole.spin, nodes.position[i] - whole.center);
+        nodes.mean_velocity[i] += chord * rotate(turn, turning) - turning - back * acceleration;
+    }
 }
 
 void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
@@ -95,6 +122,7 @@ void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
         change += nodes.mass[i] * (moves[i] / h - nodes.mean_velocity[i]);
     }
     const Vec3 half = change / (2 * mass);
+    nodes.substep = h;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         nodes.mean_velocity[i] = moves[i] / h;
         nodes.velocity[i] = nodes.inverse_mass[i] > 0 ? nodes.mean_velocity[i] + half : Vec3{};

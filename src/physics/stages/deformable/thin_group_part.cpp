@@ -85,6 +85,7 @@ ThinGroupPart::ThinGroupPart(const DeformableAccess& world, const ThinGroup& gro
             member.substep = substep_of(world, *one.record, h, time);
             member.first = moves_.size();
             member.count = one.record->nodes().size();
+            one.record->begin_substep(h, world.settings.gravity, group.members.size() == 1);
             for (const Vec3 velocity : one.record->nodes().mean_velocity) moves_.push_back(h * velocity);
         }
         if (is_sheet) sheets_ = members_.size();
