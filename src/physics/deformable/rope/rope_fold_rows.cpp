@@ -14,8 +14,8 @@ namespace embody::physics::deformable {
 
 namespace {
 
-// Stiffness against twist over that of bending: as good as rigid, and far above rounding. Test:
-// Wire.ABentWireKeepsItsFormInFlight
+// Stiffness against twist over that of bending, a number: as good as rigid, and far above rounding.
+// Test: Wire.ABentWireKeepsItsFormInFlight
 constexpr double rigid = 1e4;
 
 // Parts of a row by the two directions and by the turns about them.

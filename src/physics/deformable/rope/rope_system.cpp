@@ -150,8 +150,8 @@ void RopeSystem::fill_matrix(std::span<const TouchSpring> springs, std::span<con
 
 // What couples the folds' nodes, angles and bodies; nodes alone of links only, see add().
 void RopeSystem::fill_folds(const std::vector<bool>& fixed) {
-    // Stiffness of an angle that nothing bends, over that of its links: keeps the matrix definite. Test:
-    // Wire.AStraightWireFliesOn
+    // Stiffness of an angle that nothing bends, over that of its links, a number: keeps the matrix definite.
+    // Test: Wire.AStraightWireFliesOn
     constexpr double least = 1e-9;
     struct Part {
         std::size_t row = 0;
