@@ -33,6 +33,15 @@ Nodes& thin_nodes(const DeformableRecord& record) {
     return record.cloth() ? record.cloth()->nodes() : record.rope()->nodes();
 }
 
+// Values of nodes for those that have come from them: the same, or by their fraction of its mass.
+void take_by_node(std::vector<Vec3>& values, std::span<const std::uint32_t> origin, std::span<const double> fractions) {
+    if (values.empty()) return;
+    std::vector<Vec3> taken;
+    for (std::size_t i = 0; i < origin.size(); ++i)
+        taken.push_back((fractions.empty() ? 1 : fractions[i]) * values[origin[i]]);
+    values = std::move(taken);
+}
+
 }  // namespace
 
 Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition) {
@@ -71,6 +80,8 @@ Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::s
         to.mean_velocity[i] = from.mean_velocity[origin[i]];
         to.velocity[i] = from.velocity[origin[i]];
     }
+    std::vector<double> fractions;  // of the node's mass
+    for (std::size_t i = 0; i < origin.size(); ++i) fractions.push_back(to.mass[i] / from.mass[origin[i]]);
     made->last_positions = to.position;
     made->cloth()->go_on_from(*record.cloth());
     made->contacts = record.contacts;
@@ -78,6 +89,13 @@ Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::s
     made->touched_deformables = record.touched_deformables;
     made->supports = record.supports;
     made->surface_pushes = record.surface_pushes;
+    made->tie_pulls = record.tie_pulls;
+    made->liquid = record.liquid;
+    take_by_node(made->liquid.velocity, origin, {});
+    take_by_node(made->liquid.acceleration, origin, {});
+    for (std::vector<Vec3>* shared :
+         {&made->liquid.force, &made->liquid.bound, &made->liquid.bound_momentum, &made->liquid.force_asleep})
+        take_by_node(*shared, origin, fractions);
     made->slot = record.slot;
     made->torn = record.torn;
     made->torn.insert(made->torn.end(), corners.begin(), corners.end());
