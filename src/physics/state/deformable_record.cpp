@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/deformable/contact/free_motion.h"
+
 namespace embody::physics::state {
 
 namespace {
@@ -164,6 +166,24 @@ void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<con
     std::ranges::copy(positions, all.position.begin());
     for (std::size_t i = 0; i < all.size(); ++i)
         all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
+    // What is held goes on: it does not fall, and a gravity taken back at each force on it would bear half its weight.
+    if (is_let_alone()) all.substep = 0;
+}
+
+bool DeformableRecord::is_let_alone() const {
+    const Nodes& all = nodes();
+    return touched_deformables.empty() && all.flow.empty() && all.force.empty() &&
+           (cloth() ? cloth()->is_free() : rope()->is_free());
+}
+
+void DeformableRecord::begin_substep(double h, Vec3 gravity, bool is_alone) {
+    change_substep(thin_nodes(*this), h, acceleration(gravity), is_alone && is_let_alone());
+}
+
+void DeformableRecord::set_mean_velocities(std::vector<Vec3> velocities, double substep) {
+    Nodes& all = thin_nodes(*this);
+    all.mean_velocity = std::move(velocities);
+    all.substep = substep;
 }
 
 void DeformableRecord::set_liquid_force(std::span<const Vec3> force) {
