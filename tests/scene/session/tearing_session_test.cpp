@@ -161,7 +161,8 @@ TEST_F(TearingSession, TellsTheMeshOfSoManyPoints) {
 TEST_F(TearingSession, IsOneMarkWhileItTearsOn) {
     begin();
     std::vector<double> times;
-    for (const json& mark : run("time.marks").at("marks"))
+    const json told = run("time.marks");
+    for (const json& mark : told.at("marks"))
         if (mark.at("kind") == "sheet_tore") times.push_back(mark.at("time"));
     ASSERT_FALSE(times.empty());
     for (std::size_t i = 1; i < times.size(); ++i) EXPECT_GE(times[i] - times[i - 1], 0.25 - 1e-9);
@@ -174,6 +175,7 @@ TEST_F(TearingSession, IsOneMarkWhileItTearsOn) {
 }
 
 // Its curves are of the nodes that it always had, so that they do not jump where it gets new ones.
+// Moments keep places to some micrometres.
 TEST_F(TearingSession, CurvesGoOnAtATear) {
     begin();
     json asked = json::array();
@@ -185,7 +187,7 @@ TEST_F(TearingSession, CurvesGoOnAtATear) {
         const std::vector<Vec3> all = places();
         for (std::size_t k = 0; k < whole_; ++k) mean += all.at(k) / static_cast<double>(whole_);
         for (const auto& [curve, expected] : {std::pair(0, mean.x), std::pair(1, mean.y), std::pair(2, mean.z)})
-            EXPECT_NEAR(told.at("curves").at(curve).at("values").at(i).get<double>(), expected, 1e-9) << i;
+            EXPECT_NEAR(told.at("curves").at(curve).at("values").at(i).get<double>(), expected, 1e-5) << i;
     }
 }
 
