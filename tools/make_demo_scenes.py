@@ -290,7 +290,7 @@ def torn_paper() -> dict:
         pins = [{"position": [across, side * half, 0], "radius": 0.03} for side in (-1, 1) for across in steps]
         pins += [{"position": [side * half, across, 0], "radius": 0.03} for side in (-1, 1) for across in steps[1:-1]]
         entities.append(box(name, [half, half, 0.0002], [x, height + half, 0], color, pins=pins, category="cloth",
-                            attributes={"kind": "cloth", "cloth_nodes": 600, "friction_static": 0.4, "friction_dynamic": 0.35, **weave}))
+                            attributes={"kind": "cloth", "cloth_nodes": 450, "friction_static": 0.4, "friction_dynamic": 0.35, **weave}))
         ball = sphere("Ball", 0.09, [x, height + half + 0.05, 1.2], [0.75, 0.3, 0.22], attributes={"mass": 4, "friction_static": 0.5, "friction_dynamic": 0.4, "friction_rolling": 0.025})
         ball["linear_velocity"] = [0, 1.2, -5]
         entities.append(ball)
@@ -327,7 +327,7 @@ def awning() -> dict:
         for back in (-1, 1):
             entities.append(fixed("Post", [0.015, height / 2, 0.015], [side * (half + 0.015), height / 2, back * (half + 0.015)], wood))
     pins = [{"position": [x * half, 0, z * half], "radius": 0.06} for x in (-1, 1) for z in (-1, 1)]
-    entities.append(box("Cloth", [half, 0.0004, half], [0, height, 0], [0.86, 0.8, 0.62], pins=pins, category="cloth", attributes={"kind": "cloth", "area_density": 0.25, "cloth_nodes": 350}))
+    entities.append(box("Cloth", [half, 0.0004, half], [0, height, 0], [0.86, 0.8, 0.62], pins=pins, category="cloth", attributes={"kind": "cloth", "area_density": 0.25, "cloth_nodes": 260}))
     pipe = [{"type": "cylinder", "radius": 0.02, "half_height": 0.35}, {"type": "box", "half_extents": [0.014, 0.014, 0.2], "position": [0, 0.34, 0.2]},
             {"type": "cylinder", "radius": 0.026, "half_height": 0.015, "position": [0, 0.32, 0.4]}]
     entities.append({"name": "Tap", "shape": {"type": "compound", "children": pipe}, "pose": {"position": [0, height, -half - 0.1]}, "color": [0.6, 0.62, 0.65], "locked": True,

@@ -185,7 +185,14 @@ describe("the drawn form of a torn sheet", () => {
 /** Softs of a page whose server answers each question after a while, and one entity with a sheet among them. */
 class Page {
   asked = [];
-  softs = new SoftBodies({ request: () => new Promise((answer) => this.asked.push((mesh) => answer({ mesh }))) });
+  /** How many points each question was about. */
+  points = [];
+  softs = new SoftBodies({
+    request: (command, { points }) => {
+      this.points.push(points);
+      return new Promise((answer) => this.asked.push((mesh) => answer({ mesh })));
+    },
+  });
   time = 0;
 
   /** A frame with these places; returns whether another skin is wanted. */
@@ -273,6 +280,15 @@ describe("a sheet that tears from frame to frame", () => {
     const skin = await page.answer(whole, page.dress());
     assert.equal(skin.form.origins, null);
     near(page.drawn().area, 1, 1e-3);
+  });
+
+  it("asks for the mesh of the frame that is drawn, as films of a take need it", async () => {
+    const page = await pageWith(torn);
+    for (const mesh of [halfTorn, whole, torn]) {
+      page.take(mesh.nodes);
+      assert.ok(await page.answer(mesh, page.dress()));
+      assert.equal(page.points.at(-1), mesh.nodes.length / 3);
+    }
   });
 
   it("does not bend with the nodes of a sheet that was meshed anew", async () => {

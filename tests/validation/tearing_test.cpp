@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "foundation/random.h"
 #include "physics/definitions/deformable_primitives.h"
@@ -23,8 +24,8 @@ double log_between(Random& random, double low, double high) {
     return std::exp(random.between(std::log(low), std::log(high)));
 }
 
-// Cuts the sheet along z = 0 up to x.
-void cut_until(DeformableDefinition& sheet, double x) {
+// Cuts the sheet along z = 0 up to x. `held`: as of NodeFans::split.
+void cut_until(DeformableDefinition& sheet, double x, std::span<const std::uint8_t> held = {}) {
     std::vector<SheetEdge> cut;
     const auto is_on = [&](std::uint32_t node) {
         return std::fabs(sheet.nodes[node].z) < 1e-9 && sheet.nodes[node].x < x;
@@ -36,7 +37,7 @@ void cut_until(DeformableDefinition& sheet, double x) {
                 cut.push_back(edge_between(triangle[k], triangle[(k + 1) % 3]));
         }
     }
-    ASSERT_TRUE(tear(sheet, NodeFans(triangles, sheet.nodes.size()).split(cut, {})).ok());
+    ASSERT_TRUE(tear(sheet, NodeFans(triangles, sheet.nodes.size()).split(cut, held)).ok());
 }
 
 // By node: whether a triangle at it reaches beyond z = 0.
@@ -58,6 +59,15 @@ BodyHandle add_holder(World& world, BodyKind kind, double mass, Vec3 position) {
     body.linear_damping = body.angular_damping = 5;
     body.collision_mask = 0;
     return world.create_body(body).value();
+}
+
+// A light thread that ends in the node.
+DeformableHandle tie_thread(World& world, DeformableHandle sheet, std::uint32_t node) {
+    const Vec3 end = world.node_positions(sheet)[node];
+    DeformableDefinition thread = rope_between(end + Vec3{0, 0.02, 0}, end, 0.01, {.linear_density = 1e-4});
+    thread.collision_mask = 0;
+    thread.ties = {{static_cast<std::uint32_t>(thread.nodes.size() - 1), sheet, {node, 0, 0}, {1, 0, 0}}};
+    return world.create_deformable(thread).value();
 }
 
 // A strip between two bars that draw it apart across, along Z.
@@ -269,6 +279,162 @@ TEST(Tearing, FlyingPiecesKeepMomentum) {
     }
 }
 
+// A tear that much energy drives comes to a column of nodes that something holds, or that threads are tied to: it ends
+// there. Threads do not move the nodes.
+TEST(Tearing, EndsAtWhatIsHeld) {
+    Random random(8);
+    for (int i = 0; i < 12; ++i) {
+        const bool by_threads = i % 2 == 0;
+        const double height = random.between(0.1, 0.3), stiffness = log_between(random, 5e3, 1e5);
+        const double strain = random.between(0.02, 0.08), wall = random.between(-0.1, 0.3) * height;
+        const double edge = height / (4 + 2 * static_cast<double>(random.below(3))) * 2 / std::sqrt(3);
+        DeformableDefinition sheet = cloth_rectangle(
+            3 * height, height, edge,
+            {.stretch_stiffness = stiffness, .shear_stiffness = stiffness / 2, .rayleigh_damping = 0.01});
+        cut_until(sheet, -0.5 * height);
+        Clamped clamped(sheet, height, strain);
+        World& world = *clamped.world;
+        DeformableDefinition weak = *world.deformable(clamped.sheet);
+        const auto is_wall = [&](Vec3 place) { return std::fabs(place.x - wall) <= 0.51 * edge; };
+        const BodyHandle holder = add_holder(world, BodyKind::kinematic_body, 1, {});
+        for (std::uint32_t node = 0; node < weak.nodes.size(); ++node) {
+            if (!is_wall(weak.nodes[node]) || std::fabs(weak.nodes[node].z) > height / 2 - 1e-9) continue;
+            if (by_threads)
+                tie_thread(world, clamped.sheet, node);
+            else
+                weak.attachments.push_back({node, holder, world.node_positions(clamped.sheet)[node]});
+        }
+        std::get<Cloth>(weak.matter).tear_energy =
+            stiffness * strain * strain * height / 2 / log_between(random, 2, 20);
+        ASSERT_TRUE(world.set_deformable(clamped.sheet, weak).ok());
+        run(world, 0.5);
+        double farthest = -height;
+        for (const TornCorner& corner : world.lasting_deformation(clamped.sheet).torn_corners)
+            farthest = std::max(farthest, weak.nodes[corner.from].x);
+        EXPECT_GT(farthest, wall - 2.5 * edge) << i << ": came to the wall";
+        EXPECT_LT(farthest, wall - 0.5 * edge) << i << ": did not pass it";
+    }
+}
+
+// A tear all around a held node: the sides hang together by it until it is let go.
+TEST(Tearing, ComesApartAtANodeThatIsLetGo) {
+    Random random(9);
+    for (int i = 0; i < 20; ++i) {
+        const bool by_thread = i % 2 == 0;
+        const double size = random.between(0.2, 0.6), edge = size / 6 * 2 / std::sqrt(3);
+        const DeformableDefinition plain =
+            cloth_rectangle(size * random.between(1, 2), size, edge,
+                            {.tear_strength = i % 3 == 0 ? 1e300 : 2e300, .tear_energy = i % 3 == 1 ? 1e300 : 2e300});
+        const double until = random.between(0, 0.5) * size;
+        std::vector<std::uint32_t> line;
+        for (std::uint32_t node = 0; node < plain.nodes.size(); ++node) {
+            if (std::fabs(plain.nodes[node].z) < 1e-9 && plain.nodes[node].x < until - 2.5 * edge) line.push_back(node);
+        }
+        const std::uint32_t node = line.at(random.below(line.size()));
+        std::vector<std::uint8_t> held(plain.nodes.size(), 0);
+        held[node] = 1;
+        DeformableDefinition cut = plain, stitched = plain;
+        cut_until(cut, until);
+        cut_until(stitched, until, held);
+        ASSERT_EQ(stitched.nodes.size() + 1, cut.nodes.size()) << i;
+
+        const auto world = make_world({.gravity = {}});
+        if (!by_thread) stitched.pinned = {node};
+        const DeformableHandle sheet = world->create_deformable(stitched).value();
+        const DeformableHandle thread = by_thread ? tie_thread(*world, sheet, node) : DeformableHandle{};
+        run(*world, 0.05);
+        EXPECT_EQ(world->node_positions(sheet).size(), stitched.nodes.size()) << i << ": it is held";
+        stitched.pinned.clear();
+        if (by_thread)
+            ASSERT_TRUE(world->destroy_deformable(thread).ok());
+        else
+            ASSERT_TRUE(world->set_deformable(sheet, stitched).ok());
+        run(*world, 0.05);
+        EXPECT_EQ(world->node_positions(sheet).size(), cut.nodes.size()) << i << ": it is let go";
+    }
+}
+
+// Around the tip of a slit the tension has no value, so that no tear starts there, unless the tip is held: then it does
+// not go on either.
+TEST(Tearing, StartsBesideAHeldTip) {
+    Random random(10);
+    for (int i = 0; i < 20; ++i) {
+        const bool is_held = i % 2 == 0;
+        const double size = random.between(0.2, 0.6), edge = size / 8 * 2 / std::sqrt(3);
+        const double stiffness = log_between(random, 1e3, 1e5), strength = random.between(0.01, 0.1) * stiffness;
+        DeformableDefinition sheet = cloth_rectangle(size, size, edge,
+                                                     {.stretch_stiffness = stiffness,
+                                                      .shear_stiffness = 0.3 * stiffness,
+                                                      .tear_strength = strength,
+                                                      .tear_energy = 1e300});
+        cut_until(sheet, random.between(-0.1, 0.1) * size);
+        const NodeFans fans(std::get<Cloth>(sheet.matter).triangles, sheet.nodes.size());
+        std::vector<std::uint8_t> is_free(sheet.nodes.size(), 0);
+        for (std::uint32_t node = 0; node < sheet.nodes.size(); ++node) {
+            const auto around = fans.around(node);
+            const std::vector<std::uint32_t>& spokes = around.at(0).spokes;
+            if (around[0].is_closed() || sheet.nodes[spokes.front()] != sheet.nodes[spokes.back()]) continue;
+            is_free[node] = !is_held;
+            for (const std::uint32_t near : spokes) is_free[near] = 1;
+        }
+        for (std::uint32_t node = 0; node < sheet.nodes.size(); ++node) {
+            if (is_free[node] == 0) sheet.pinned.push_back(node);
+        }
+        const double stretch = random.between(1.5, 2) * strength / stiffness;
+        std::vector<Vec3> places = sheet.nodes;
+        for (Vec3& place : places) place = (1 + stretch) * place;
+        const auto world = make_world({.gravity = {}});
+        const DeformableHandle handle = world->create_deformable(sheet).value();
+        ASSERT_TRUE(world->set_nodes(handle, places, std::vector<Vec3>(places.size())).ok());
+        world->step();
+        EXPECT_EQ(world->sheet_tear_events().size(), is_held ? 1u : 0u) << i;
+    }
+}
+
+// What liquids know of a sheet's nodes, and what its ties pull, goes on with them.
+TEST(Tearing, KeepsWhatLiquidsAndTiesKnow) {
+    Random random(11);
+    for (int i = 0; i < 20; ++i) {
+        const DeformableDefinition sheet =
+            cloth_rectangle(random.between(0.2, 1), random.between(0.2, 1), random.between(0.05, 0.1));
+        state::DeformableRecord record = state::make_deformable_record(sheet).value();
+        const auto any = [&](std::size_t count) {
+            std::vector<Vec3> values;
+            for (std::size_t k = 0; k < count; ++k)
+                values.push_back({random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
+            return values;
+        };
+        const std::size_t nodes = sheet.nodes.size();
+        record.liquid = {random.below(100), any(nodes), any(nodes), any(nodes),
+                         any(nodes),        any(nodes), any(nodes), true};
+        record.tie_pulls = any(3);
+        const auto& triangles = std::get<Cloth>(sheet.matter).triangles;
+        std::vector<SheetEdge> cut;
+        for (const auto& triangle : triangles) {
+            const std::size_t k = random.below(3);
+            if (random.unit() < 0.3) cut.push_back(edge_between(triangle[k], triangle[(k + 1) % 3]));
+        }
+        const std::vector<TornCorner> corners = NodeFans(triangles, nodes).split(cut, {});
+        const state::DeformableRecord torn = state::make_torn_record(record, corners).value();
+        EXPECT_EQ(torn.tie_pulls, record.tie_pulls);
+        EXPECT_EQ(torn.liquid.step, record.liquid.step);
+        EXPECT_TRUE(torn.liquid.wakes);
+        for (const auto shared : {&state::LiquidMemory::force, &state::LiquidMemory::bound,
+                                  &state::LiquidMemory::bound_momentum, &state::LiquidMemory::force_asleep}) {
+            Vec3 before, after;
+            for (const Vec3 value : record.liquid.*shared) before += value;
+            for (const Vec3 value : torn.liquid.*shared) after += value;
+            EXPECT_LE(length(after - before), 1e-12) << i;
+            EXPECT_EQ((torn.liquid.*shared).size(), torn.nodes().size());
+        }
+        for (const auto same : {&state::LiquidMemory::velocity, &state::LiquidMemory::acceleration}) {
+            ASSERT_EQ((torn.liquid.*same).size(), torn.nodes().size());
+            for (const TornCorner& corner : corners)
+                EXPECT_EQ((torn.liquid.*same)[corner.node], (record.liquid.*same)[corner.from]);
+        }
+    }
+}
+
 // A ball that is blown up too far loses its gas with its first tear.
 TEST(Tearing, ABallBursts) {
     const auto world = make_world({.gravity = {}});
@@ -331,9 +497,14 @@ TEST(Tearing, IsLastingAndGoesOnTheSame) {
     EXPECT_GT(first->node_positions(sheet).size(), count) << "has torn on";
 
     EXPECT_FALSE(first->set_lasting_deformation(sheet, lasting).ok()) << "it is torn otherwise";
+    DeformableDefinition turned = *second->deformable(copy);
+    for (auto& [a, b, c] : std::get<Cloth>(turned.matter).triangles) std::tie(a, b, c) = std::tuple(b, c, a);
+    ASSERT_TRUE(second->set_deformable(copy, turned).ok());
+    EXPECT_TRUE(second->lasting_deformation(copy).torn_corners.empty()) << "the corners are others";
     const std::uint32_t first_node = std::get<Cloth>(definition.matter).triangles[0][0], next = first_node + 1;
-    for (const TornCorner wrong : {TornCorner{1'000'000, 0, 0}, TornCorner{0, first_node, 1'000'000},
-                                   TornCorner{0, first_node, next}, TornCorner{0, next, next}}) {
+    for (const TornCorner wrong :
+         {TornCorner{1'000'000, 0, 0}, TornCorner{0, first_node, 1'000'000}, TornCorner{0, first_node, next},
+          TornCorner{0, next, next}, TornCorner{0, first_node, first_node}}) {
         const auto whole = make_world();
         const DeformableHandle own = whole->create_deformable(definition).value();
         const Result<void> set = whole->set_lasting_deformation(own, {.torn_corners = {wrong}});

@@ -198,7 +198,7 @@ Result<void> tear(DeformableDefinition& definition, std::span<const TornCorner> 
         if (now != from) return Error{field, "was not at node " + std::to_string(from)};
         const Vec3 place = torn.nodes[now];
         if (node == torn.nodes.size()) torn.nodes.push_back(place);
-        if (node > torn.nodes.size() || torn.nodes[node] != place)
+        if (node == from || node > torn.nodes.size() || torn.nodes[node] != place)
             return Error{field, "has a node that is neither the next new one nor at the corner's place"};
         now = node;
     }

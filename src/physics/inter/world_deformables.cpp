@@ -265,7 +265,7 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     changed->touched_bodies = std::move(record->touched_bodies);
     if (changed->rope() && record->rope()) changed->rope()->go_on_from(*record->rope());
     if (changed->cloth() && record->cloth()) changed->cloth()->go_on_from(*record->cloth());
-    changed->torn = record->torn;
+    if (changed->has_surface_of(*record)) changed->torn = record->torn;
     // Contacts with others are known by the numbers of edges and triangles.
     if (!changed->has_surface_of(*record)) forget_thin_contacts(state_->deformables, deformable.index);
     *record = std::move(*changed);

@@ -10,12 +10,22 @@ using namespace state;
 
 namespace {
 
-// By node: whether something holds it.
-std::vector<std::uint8_t> held_nodes(const DeformableDefinition& definition) {
+// By node: whether something holds it, or is tied to it.
+std::vector<std::uint8_t> held_nodes(const DeformableState& deformables, std::uint32_t sheet) {
+    const DeformableDefinition& definition = deformables.records.at(sheet).definition;
     std::vector<std::uint8_t> held(definition.nodes.size(), 0);
     for (const std::uint32_t node : definition.pinned) held[node] = 1;
     for (const Attachment& attachment : definition.attachments) held[attachment.node] = 1;
     for (const Tie& tie : definition.ties) held[tie.node] = 1;
+    const DeformableHandle own = deformables.records.handle_at(sheet);
+    for (std::uint32_t slot = 0; slot < deformables.records.slot_count(); ++slot) {
+        if (!deformables.records.used(slot)) continue;
+        for (const Tie& tie : deformables.records.at(slot).definition.ties) {
+            for (std::size_t k = 0; tie.other == own && k < 3; ++k) {
+                if (tie.weight[k] > 0) held[tie.other_nodes[k]] = 1;
+            }
+        }
+    }
     return held;
 }
 
@@ -32,7 +42,7 @@ void World::tear_sheets() {
             sheet->is_frozen())
             continue;
         const std::vector<TornCorner> corners =
-            sheet->tear().find(sheet->triangles(), sheet->stress(), held_nodes(record.definition));
+            sheet->tear().find(sheet->triangles(), sheet->stress(), held_nodes(state_->deformables, slot));
         if (corners.empty()) continue;
         const std::size_t before = record.nodes().size();
         Result<DeformableRecord> torn = make_torn_record(record, corners);

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/deformable/contact/free_motion.h"
+
 namespace embody::physics::state {
 
 namespace {
@@ -31,6 +33,15 @@ Result<void> make_capsules(DeformableRecord& record) {
 // The nodes of a sheet or rope.
 Nodes& thin_nodes(const DeformableRecord& record) {
     return record.cloth() ? record.cloth()->nodes() : record.rope()->nodes();
+}
+
+// Values of nodes for those that have come from them: the same, or by their fraction of its mass.
+void take_by_node(std::vector<Vec3>& values, std::span<const std::uint32_t> origin, std::span<const double> fractions) {
+    if (values.empty()) return;
+    std::vector<Vec3> taken;
+    for (std::size_t i = 0; i < origin.size(); ++i)
+        taken.push_back((fractions.empty() ? 1 : fractions[i]) * values[origin[i]]);
+    values = std::move(taken);
 }
 
 }  // namespace
@@ -71,6 +82,8 @@ Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::s
         to.mean_velocity[i] = from.mean_velocity[origin[i]];
         to.velocity[i] = from.velocity[origin[i]];
     }
+    std::vector<double> fractions;  // of the node's mass
+    for (std::size_t i = 0; i < origin.size(); ++i) fractions.push_back(to.mass[i] / from.mass[origin[i]]);
     made->last_positions = to.position;
     made->cloth()->go_on_from(*record.cloth());
     made->contacts = record.contacts;
@@ -78,6 +91,13 @@ Result<DeformableRecord> make_torn_record(const DeformableRecord& record, std::s
     made->touched_deformables = record.touched_deformables;
     made->supports = record.supports;
     made->surface_pushes = record.surface_pushes;
+    made->tie_pulls = record.tie_pulls;
+    made->liquid = record.liquid;
+    take_by_node(made->liquid.velocity, origin, {});
+    take_by_node(made->liquid.acceleration, origin, {});
+    for (std::vector<Vec3>* shared :
+         {&made->liquid.force, &made->liquid.bound, &made->liquid.bound_momentum, &made->liquid.force_asleep})
+        take_by_node(*shared, origin, fractions);
     made->slot = record.slot;
     made->torn = record.torn;
     made->torn.insert(made->torn.end(), corners.begin(), corners.end());
@@ -146,6 +166,24 @@ void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<con
     std::ranges::copy(positions, all.position.begin());
     for (std::size_t i = 0; i < all.size(); ++i)
         all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
+    // What is held goes on: it does not fall, and a gravity taken back at each force on it would bear half its weight.
+    if (is_let_alone()) all.substep = 0;
+}
+
+bool DeformableRecord::is_let_alone() const {
+    const Nodes& all = nodes();
+    return touched_deformables.empty() && all.flow.empty() && all.force.empty() &&
+           (cloth() ? cloth()->is_free() : rope()->is_free());
+}
+
+void DeformableRecord::begin_substep(double h, Vec3 gravity, bool is_alone) {
+    change_substep(thin_nodes(*this), h, acceleration(gravity), is_alone && is_let_alone());
+}
+
+void DeformableRecord::set_mean_velocities(std::vector<Vec3> velocities, double substep) {
+    Nodes& all = thin_nodes(*this);
+    all.mean_velocity = std::move(velocities);
+    all.substep = substep;
 }
 
 void DeformableRecord::set_liquid_force(std::span<const Vec3> force) {

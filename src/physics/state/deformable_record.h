@@ -91,6 +91,10 @@ struct DeformableRecord {
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no
     /// velocity.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Before a substep of h seconds of a sheet or rope, alone in its group or not; see change_substep().
+    void begin_substep(double h, Vec3 gravity, bool is_alone);
+    /// Of the nodes of a sheet or rope, one a node, m/s, over a substep of so many seconds.
+    void set_mean_velocities(std::vector<Vec3> velocities, double substep);
     /// Sets the forces of liquids on the nodes, N; empty: none.
     void set_liquid_force(std::span<const Vec3> force);
     /// Sets the flow around a sheet's or rope's nodes; empty: none.
@@ -101,6 +105,8 @@ struct DeformableRecord {
     void stop_at(std::span<const Vec3> positions);
 
 private:
+    /// Of a sheet or rope: whether nothing held, pushed or touched it in the last substep.
+    [[nodiscard]] bool is_let_alone() const;
     template <class Matter>
     [[nodiscard]] Matter* of_kind() const {
         const auto* found = std::get_if<std::unique_ptr<Matter>>(&matter);

@@ -56,9 +56,9 @@ inline constexpr auto fields_of<KeptForm> = std::tuple{
                    "k and k + 1"),
     saved_when_set(
         "bend", &KeptForm::bend,
-        "of a sheet: the curvature that friction holds, xx, yy and √2 xy of each triangle, x along the warp, "
-        "then that of folds that stay",
-        {.unit = "1/m"}),
+        "of a sheet: the curvature (1/m) that friction holds, xx, yy and √2 xy of each triangle, x along the warp, "
+        "then that of folds that stay. Of a wire: of each node the changes of direction that stay at it, before its "
+        "clamp and after it, each as two parts across the wire"),
     saved_when_set("torn", &KeptForm::torn,
                    "of a sheet: where it has torn, in the order of time. Three numbers each: a corner, 3 t + k of "
                    "triangle t, the node that it had, and the one that it has"),

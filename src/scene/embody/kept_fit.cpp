@@ -73,6 +73,7 @@ constexpr const char* as_modelled = "take the field kept out, or keep the form a
 // Nodes that a sheet has got by its tears.
 Result<std::size_t> check_torn(const KeptForm& kept, const KeptFit& fit) {
     if (kept.torn.empty()) return std::size_t{0};
+    if (fit.triangles.empty()) return Error{"kept.torn", "is of a sheet, which this is not", as_modelled};
     // Any nodes at places of their own: what must be right is which belongs to which.
     physics::DeformableDefinition sheet{.matter = physics::Cloth{.triangles = fit.triangles}};
     for (std::size_t i = 0; i < fit.max_points; ++i) sheet.nodes.push_back({static_cast<double>(i), 0, 0});

@@ -147,8 +147,11 @@ std::vector<physics::TornCorner> SoftNodes::torn_corners(std::size_t points) con
 DeformableDefinition SoftNodes::definition_of(std::size_t points) const {
     DeformableDefinition whole = definition();
     auto* cloth = std::get_if<physics::Cloth>(&whole.matter);
-    if (cloth == nullptr || points >= whole.nodes.size()) return whole;
-    for (const physics::TornCorner& torn : lasting_deformation().torn_corners | std::views::reverse) {
+    const std::vector<physics::TornCorner> corners = lasting_deformation().torn_corners;
+    if (cloth == nullptr || corners.empty()) return whole;
+    const std::uint32_t first = std::ranges::min(corners, {}, &physics::TornCorner::node).node;
+    points = std::clamp<std::size_t>(points, first, whole.nodes.size());
+    for (const physics::TornCorner& torn : corners | std::views::reverse) {
         if (torn.node >= points) cloth->triangles[torn.corner / 3][torn.corner % 3] = torn.from;
     }
     whole.nodes.resize(points);

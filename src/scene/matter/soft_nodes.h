@@ -33,7 +33,7 @@ public:
     void read_velocities(std::vector<Vec3>& velocities) const override;
     /// The mesh that deforms the drawn form, at rest.
     [[nodiscard]] const physics::DeformableDefinition& definition() const { return *world_.deformable(handle_); }
-    /// The same when it had so many points: a sheet that tears gets more.
+    /// The same when it had so many points: a sheet that tears gets more. Of fewer than it began with: those.
     [[nodiscard]] physics::DeformableDefinition definition_of(std::size_t points) const;
     /// What had torn of a sheet when it had so many points.
     [[nodiscard]] std::vector<physics::TornCorner> torn_corners(std::size_t points) const;

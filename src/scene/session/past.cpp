@@ -54,6 +54,26 @@ std::vector<std::uint32_t> Past::broken_at(EntityIndex rope, double time) const 
     return segments;
 }
 
+std::vector<physics::TornCorner> Past::torn_at(EntityIndex sheet, double time, std::size_t points) const {
+    std::vector<physics::TornCorner> corners;
+    if (const auto known = torn.find(sheet); known != torn.end()) {
+        for (const Torn& each : known->second)
+            if (each.since <= time) corners = each.corners;
+    }
+    // What tore later made nodes of higher numbers.
+    std::erase_if(corners, [points](const physics::TornCorner& corner) { return corner.node >= points; });
+    return corners;
+}
+
+void Past::add_torn(EntityIndex sheet, double time, std::vector<physics::TornCorner> corners) {
+    std::vector<Torn>& known = torn[sheet];
+    const auto goes_on = [&](const std::vector<physics::TornCorner>& before) {
+        return before.size() <= corners.size() && std::equal(before.begin(), before.end(), corners.begin());
+    };
+    if (known.empty() || !goes_on(known.back().corners)) known.push_back({time, {}});
+    known.back().corners = std::move(corners);
+}
+
 void Past::clear() {
     take.clear();
     marks.clear();
@@ -61,6 +81,7 @@ void Past::clear() {
     removed.clear();
     melted.clear();
     fired.clear();
+    torn.clear();
     breaks.clear();
     if (shown) ++jumps;
     shown.reset();

@@ -60,6 +60,13 @@ struct Past {
         std::uint32_t segment = 0;
         double time = 0;  ///< s
     };
+    struct Torn {
+        double since = 0;  ///< s
+        std::vector<physics::TornCorner> corners;
+    };
+    /// What has torn of sheets in this run, also of what is gone since. A sheet that was made anew begins another
+    /// entry; by time.
+    std::map<EntityIndex, std::vector<Torn>> torn;
     std::vector<Break> breaks;                     ///< of ropes in this run, by time
     std::optional<Moment> shown;                   ///< empty: what is now
     std::uint64_t jumps = 0;                       ///< how often something else was shown
@@ -68,6 +75,10 @@ struct Past {
 
     /// Segments of the rope that broke in this run until the time (s).
     [[nodiscard]] std::vector<std::uint32_t> broken_at(EntityIndex rope, double time) const;
+    /// What had torn of the sheet at that time, when it had so many points.
+    [[nodiscard]] std::vector<physics::TornCorner> torn_at(EntityIndex sheet, double time, std::size_t points) const;
+    /// The sheet has torn: `corners` are all that have, in the order of time.
+    void add_torn(EntityIndex sheet, double time, std::vector<physics::TornCorner> corners);
     /// For a new run. The rate stays.
     void clear();
 };

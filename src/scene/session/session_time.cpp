@@ -15,7 +15,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double marked_speed = 0.3;  // m/s: slower contacts are no event of a run
+constexpr double marked_speed = 0.3;   // m/s: slower contacts are no event of a run
+constexpr double tear_seconds = 0.25;  // s: tears of a sheet that follow each other sooner are one event
 constexpr auto told_period = std::chrono::milliseconds(250);
 
 Error no_take(const char* command) {
@@ -60,8 +61,15 @@ void SessionState::record_step() {
         past.breaks.push_back({rope, broke.segment, time});
         past.marks.add({time, Mark::Kind::rope, rope});
     }
-    for (const physics::SheetTearEvent& tore : simulation->sheet_tears())
-        past.marks.add({time, Mark::Kind::tear, static_cast<EntityIndex>(tore.user_data)});
+    for (const physics::SheetTearEvent& tore : simulation->sheet_tears()) {
+        const auto sheet = static_cast<EntityIndex>(tore.user_data);
+        if (const SoftNodes* soft = as_soft(simulation->points(sheet)))
+            past.add_torn(sheet, time, soft->lasting_deformation().torn_corners);
+        const auto is_one_tear = [&](const Mark& mark) {
+            return mark.kind == Mark::Kind::tear && mark.a == sheet && mark.time > time - tear_seconds;
+        };
+        if (std::ranges::none_of(past.marks.all(), is_one_tear)) past.marks.add({time, Mark::Kind::tear, sheet});
+    }
     const auto is_marked = [](const physics::ContactEvent& event) {
         return event.user_data_a != event.user_data_b && event.approach_speed >= marked_speed;
     };
@@ -147,8 +155,9 @@ Result<std::vector<std::string>> SessionState::branch() {
         if (is_before(entry)) done.fired.insert(entry.first);
 
     for (const EntityMoment& was : moment.entities) {
-        const SoftNodes* soft = as_soft(simulation->points(was.motion.entity));
-        if (soft != nullptr && was.points) done.torn[was.motion.entity] = soft->torn_corners(was.points->count());
+        if (!was.points) continue;
+        auto torn = past.torn_at(was.motion.entity, moment.time, was.points->count());
+        if (!torn.empty()) done.torn[was.motion.entity] = std::move(torn);
     }
 
     Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms, MissingModels::wait);
@@ -164,6 +173,14 @@ Result<std::vector<std::string>> SessionState::branch() {
                (std::holds_alternative<SetAttribute>(action.effect) || std::holds_alternative<SetOpen>(action.effect) ||
                 std::holds_alternative<SetEnabled>(action.effect) || std::holds_alternative<ApplyForce>(action.effect));
     });
+    const bool wires = std::ranges::any_of(moment.entities, [&](const EntityMoment& was) {
+        const SoftNodes* before = as_soft(simulation->points(was.motion.entity));
+        const SoftNodes* after = as_soft(made.value()->points(was.motion.entity));
+        return before != nullptr && after != nullptr &&
+               std::holds_alternative<physics::Rope>(after->definition().matter) &&
+               before->lasting_deformation().bend != after->lasting_deformation().bend;
+    });
+    if (wires) notes.emplace_back("wires that had been bent are as at the start again");
     if (values) notes.emplace_back("what actions had set or still pushed is as in the scene again");
 
     simulation = std::move(made).value();
@@ -177,6 +194,10 @@ Result<std::vector<std::string>> SessionState::branch() {
     std::erase_if(past.melted, [&](const auto& entry) { return entry.second.time > moment.time; });
     std::erase_if(past.fired, std::not_fn(is_before));
     std::erase_if(past.breaks, [&](const Past::Break& broke) { return broke.time > moment.time; });
+    for (auto& [sheet, torn] : past.torn) {
+        std::erase_if(torn, [&](const Past::Torn& each) { return each.since > moment.time; });
+        if (const auto now = done.torn.find(sheet); now != done.torn.end()) torn.back().corners = now->second;
+    }
     past.marks.add({moment.time, Mark::Kind::branch});
     ++past.jumps;
     show({});

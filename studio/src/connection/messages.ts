@@ -396,7 +396,7 @@ export interface Commands {
   "entity.apply_preset": [{ indices: number[]; preset: string }, unknown];
   "entity.copy_attributes": [{ from: number; indices: number[]; names?: string[] }, { copied: number; skipped: { index: number; name: string; label: string }[] }];
   "entity.collision_shape": [{ index: number }, { shape: Shape | null }];
-  "entity.simulation_mesh": [{ index: number }, { mesh: SimulationMesh | null }];
+  "entity.simulation_mesh": [{ index: number; points?: number }, { mesh: SimulationMesh | null }];
   "edit.undo": [Record<string, never>, { undone: string | null }];
   "edit.redo": [Record<string, never>, { redone: string | null }];
   "simulation.play": [Record<string, never>, unknown];

@@ -111,7 +111,8 @@ export class SoftBodies {
     this.dressing.add(index);
     try {
       const drawable = await plain;
-      const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
+      const points = this.all.get(index)?.to.length;
+      const { mesh } = await this.connection.request("entity.simulation_mesh", { index, ...(points && { points: points / 3 }) });
       const nodes = this.all.get(index);
       return nodes && mesh ? this.wear(index, nodes, mesh, drawable, scale, quality) : null;
     } finally {

@@ -134,6 +134,45 @@ TEST(FreeMotion, OfARigidMotionIsThatMotion) {
     EXPECT_LT(length(whole.spin - spin), 1e-6);
 }
 
+// Against the places that a point in free fall had h seconds ago.
+TEST(FreeMotion, OfTheSubstepBeforeIsThatOfAPoint) {
+    constexpr Vec3 gravity{0, -9.81, 0};
+    Random random(5);
+    for (int trial = 0; trial < 100; ++trial) {
+        Nodes nodes = nodes_at({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+        std::vector<Vec3> given;
+        for (Vec3& velocity : nodes.mean_velocity) given.push_back(velocity = any_vector(random, 3));
+        nodes.inverse_mass[0] = 0;
+        for (const double h : {random.between(1e-3, 0.02), random.between(1e-3, 0.02)}) {
+            change_substep(nodes, h, gravity, true);
+            EXPECT_EQ(nodes.mean_velocity[0], given[0]) << "pinned";
+            for (std::size_t i : {1, 2})
+                EXPECT_LT(length(nodes.mean_velocity[i] - (given[i] - h / 2 * gravity)), 1e-12) << trial;
+        }
+    }
+}
+
+TEST(FreeMotion, OfWhatIsHeldGoesOn) {
+    constexpr Vec3 gravity{0, -9.81, 0};
+    Nodes nodes = nodes_at({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const auto all_have = [&](Vec3 velocity) {
+        return std::ranges::all_of(nodes.mean_velocity, [&](Vec3 v) { return length(v - velocity) < 1e-12; });
+    };
+    for (const bool is_free : {false, true}) {
+        nodes.substep = 0;
+        change_substep(nodes, 0.01, gravity, is_free);
+        EXPECT_TRUE(all_have({})) << "it may be in balance";
+    }
+    std::ranges::fill(nodes.mean_velocity, Vec3{1, 2, 3});
+    change_substep(nodes, 0.001, gravity, false);
+    EXPECT_TRUE(all_have({1, 2, 3})) << "what holds it is not known";
+    nodes.substep = 0;
+    change_substep(nodes, 0.01, gravity, false);
+    EXPECT_TRUE(all_have(Vec3{1, 2, 3} - 0.005 * gravity)) << "it was thrown";
+    change_substep(nodes, 0.01, gravity, true);
+    EXPECT_TRUE(all_have(Vec3{1, 2, 3} - 0.005 * gravity)) << "of the same length";
+}
+
 TEST(TouchedBody, GoesOnItsPathAndByWhatPushesIt) {
     Random random(4);
     for (int trial = 0; trial < 20; ++trial) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "foundation/random.h"
 #include "make_world.h"
 #include "physics/inter/world.h"
 
@@ -167,6 +168,37 @@ TEST(Continuous, a_wheel_rolls_on_over_triangles) {
     for (int step = 0; step < 120; ++step) world->step();
     EXPECT_NEAR(world->pose(wheel).position.x, 50, 0.5);
     EXPECT_NEAR(world->linear_velocity(wheel).x, 24, 0.3);
+}
+
+/// Random smooth balls that fly at each other, at a mesh and at a plate, and turn.
+std::unique_ptr<World> swarm(std::uint64_t seed, int workers) {
+    auto world = make_world({.gravity = {0, -9.81, 0}, .sleeping = false, .workers = workers});
+    add(*world, floor_with_wall(true), {.kind = BodyKind::static_body, .material = smooth});
+    add(*world, thin_plate, {.kind = BodyKind::static_body, .position = {10, 0.25, 0}, .material = smooth});
+    Random random(seed);
+    const auto random_vector = [&] {
+        return Vec3{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+    };
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 place{9.2 + 0.08 * (i % 20), 0.1 + 0.08 * (i / 20 % 5), -0.04 + 0.08 * (i / 100)};
+        add(*world, SphereShape{random.between(0.005, 0.03)},
+            {.position = place,
+             .linear_velocity = random.between(0, 60) * random_vector(),
+             .angular_velocity = 200 * random_vector(),
+             .material = smooth});
+    }
+    return world;
+}
+
+TEST(Continuous, what_meets_does_not_depend_on_the_workers) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        auto one = swarm(seed, 1), three = swarm(seed, 3);
+        for (int step = 0; step < 20; ++step) {
+            one->step();
+            three->step();
+            ASSERT_EQ(one->state_hash(), three->state_hash()) << "seed " << seed << ", step " << step;
+        }
+    }
 }
 
 }  // namespace

@@ -170,13 +170,20 @@ struct Advancement {
         const double near = turn_speed * (1 - time) + search.target_separation + tolerance;
         return {length(displacement) * (1 - time) + near, displacement * (1 - time), near};
     }
-    void pass_over_touching() {
-        if (search.touching_at_start < 0) return;
+    // Passes over what touches at the start. Returns whether any other parts may be met on the whole path.
+    [[nodiscard]] bool pass_over_touching() {
+        if (search.touching_at_start < 0) return true;
         Reach reach = reach_at(0);
         reach.beside = std::fmax(reach.beside, search.touching_at_start);
-        for_each_gap(at(0), reach, [this](const Gap& gap) {
-            if (gap.distance <= search.touching_at_start) passed_over.push_back(gap.parts);
+        bool may_meet = turn_speed > 0;  // a triangle may come to show its front
+        for_each_gap(at(0), reach, [&](const Gap& gap) {
+            if (gap.distance <= search.touching_at_start) {
+                passed_over.push_back(gap.parts);
+            } else {
+                may_meet = may_meet || gap.distance <= reach.enough;
+            }
         });
+        return may_meet;
     }
     [[nodiscard]] bool is_passed_over(const PartPair& parts) const {
         return std::find(passed_over.begin(), passed_over.end(), parts) != passed_over.end();
@@ -201,7 +208,7 @@ std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_
     constexpr int max_iterations = 128;  // of conservative advancement; the time so far, which is early, serves then
     constexpr double harmless_step = 0.125;  // after which a harmless touch is looked at again
     Advancement advance{a, b, Motion(path_a), Motion(path_b), search};
-    advance.pass_over_touching();
+    if (!advance.pass_over_touching()) return std::nullopt;
     const PosedShapes end = advance.at(1);
     double time = 0;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {

@@ -478,6 +478,7 @@ std::vector<Vec3> ClothSheet::normals() const {
 }
 
 void ClothSheet::go_on_from(const ClothSheet& other) {
+    nodes_.substep = other.nodes_.substep;
     springs_.go_on_from(other.springs_);
     if (other.bend_memory_.is_active())
         bend_memory_.go_on_from(other.bend_memory_, nodes_.position, other.nodes_.position, normals());

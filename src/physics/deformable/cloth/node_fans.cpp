@@ -30,7 +30,7 @@ std::vector<NodeFan> NodeFans::around(std::uint32_t node, std::span<const SheetE
             is_manifold = is_manifold && found == none;
             found = w;
         }
-        return std::ranges::find(cut, edge_between(node, spoke)) == cut.end() ? found : none;
+        return std::ranges::binary_search(cut, edge_between(node, spoke)) ? none : found;
     };
     const auto other = [&](std::size_t w, std::uint32_t spoke) {
         return all[w].spoke[0] == spoke ? all[w].spoke[1] : all[w].spoke[0];
@@ -66,8 +66,10 @@ std::vector<std::uint32_t> NodeFans::triangles_of(std::uint32_t node) const {
     return triangles;
 }
 
-std::vector<TornCorner> NodeFans::split(std::span<const SheetEdge> cut, std::span<const std::uint8_t> held) const {
-    std::vector<std::uint32_t> ends;
+std::vector<TornCorner> NodeFans::split(std::vector<SheetEdge> cut, std::span<const std::uint8_t> held,
+                                        std::span<const std::uint32_t> loose) const {
+    std::ranges::sort(cut);
+    std::vector<std::uint32_t> ends(loose.begin(), loose.end());
     for (const auto& [low, high] : cut) ends.insert(ends.end(), {low, high});
     std::ranges::sort(ends);
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());

@@ -26,14 +26,15 @@ public:
     NodeFans(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t nodes);
 
     [[nodiscard]] std::size_t node_count() const { return start_.empty() ? 0 : start_.size() - 1; }
-    /// Fans of the node, apart at hems and at the cut edges. None where an edge has more than two triangles.
+    /// Fans of the node, apart at hems and at the cut edges, which are sorted. None where an edge has more than two
+    /// triangles.
     [[nodiscard]] std::vector<NodeFan> around(std::uint32_t node, std::span<const SheetEdge> cut = {}) const;
     /// Triangles around the node, ascending.
     [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::uint32_t node) const;
-    /// What comes apart by these cuts: of each of their ends that is not held every fan but the first gets a new node,
-    /// numbered on from the nodes that there are. `held`: by node, or none.
-    [[nodiscard]] std::vector<TornCorner> split(std::span<const SheetEdge> cut,
-                                                std::span<const std::uint8_t> held) const;
+    /// What comes apart by these cuts, in any order: of each of their ends that is not held, and of the `loose` nodes,
+    /// every fan but the first gets a new node, numbered on from the nodes that there are. `held`: by node, or none.
+    [[nodiscard]] std::vector<TornCorner> split(std::vector<SheetEdge> cut, std::span<const std::uint8_t> held,
+                                                std::span<const std::uint32_t> loose = {}) const;
 
 private:
     // The triangle's corner at the node, and its other two.

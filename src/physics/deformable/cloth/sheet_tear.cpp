@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "math/mat3.h"
 
@@ -26,7 +28,6 @@ SheetTear::SheetTear(const std::vector<Vec3>& rest, const Cloth& cloth, std::spa
     if (std::isinf(strength_) && std::isinf(energy_)) return;
     rest_ = rest;
     fans_ = NodeFans(cloth.triangles, rest.size());
-    may_start_.assign(rest.size(), 1);
     for (const ClothTriangle& triangle : triangles) {
         Vec3 f, g;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -35,21 +36,28 @@ SheetTear::SheetTear(const std::vector<Vec3>& rest, const Cloth& cloth, std::spa
         }
         axes_.push_back({normalized(f), normalized(g)});
     }
-    if (std::isinf(energy_)) return;
     for (std::uint32_t i = 0; i < rest.size(); ++i) {
         const std::vector<NodeFan> fans = fans_.around(i);
-        if (fans.size() != 1 || fans[0].is_closed()) continue;
+        if (is_stitch(fans)) stitches_.push_back(i);
+        if (std::isinf(energy_) || fans.size() != 1 || fans[0].is_closed()) continue;
         const std::vector<std::uint32_t>& spokes = fans[0].spokes;
-        if (rest[spokes.front()] != rest[spokes.back()]) continue;
-        tips_.push_back(tip_at(i, fans[0]));
-        may_start_[i] = 0;
-        for (const std::uint32_t near : spokes) may_start_[near] = 0;
+        if (rest[spokes.front()] == rest[spokes.back()]) tips_.push_back(tip_at(i, fans[0]));
     }
+}
+
+// What tears around a held node, which stays one, leaves its fans beside each other.
+bool SheetTear::is_stitch(std::span<const NodeFan> fans) const {
+    for (std::size_t a = 0; a < fans.size(); ++a) {
+        for (std::size_t b = 0; b < fans.size(); ++b) {
+            if (a != b && rest_[fans[a].spokes.back()] == rest_[fans[b].spokes.front()]) return true;
+        }
+    }
+    return false;
 }
 
 SheetTear::Tip SheetTear::tip_at(std::uint32_t node, const NodeFan& fan) const {
     const std::vector<std::uint32_t>& spokes = fan.spokes;
-    Tip tip{node, {node, spokes.front(), spokes.back()}, {}};
+    Tip tip{node, spokes, {node, spokes.front(), spokes.back()}, {}};
     for (std::size_t k = 1; k + 1 < spokes.size(); ++k) {
         const std::uint32_t near = spokes[k];
         const std::vector<NodeFan> fans = fans_.around(near);
@@ -135,7 +143,7 @@ SheetTear::Start SheetTear::start_at(std::uint32_t node, std::span<const ClothTr
 // A mean of tensors has no larger principal value than the mean of theirs: most nodes need no more than that.
 SheetTear::Start SheetTear::find_start(std::span<const ClothTriangle> triangles, std::span<const SheetStress> stress,
                                        std::span<const std::uint8_t> held) const {
-    std::vector<double> tension(may_start_.size(), 0), area(may_start_.size(), 0);
+    std::vector<double> tension(rest_.size(), 0), area(rest_.size(), 0);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const double own = largest_principal(stress[t].warp, stress[t].weft, stress[t].shear);
         for (const std::uint32_t node : triangles[t].node) {
@@ -143,26 +151,32 @@ SheetTear::Start SheetTear::find_start(std::span<const ClothTriangle> triangles,
             area[node] += triangles[t].area;
         }
     }
+    std::vector<std::uint8_t> is_at_tip(rest_.size(), 0);
+    for (const Tip& tip : tips_) {
+        if (held[tip.node] != 0) continue;
+        is_at_tip[tip.node] = 1;
+        for (const std::uint32_t near : tip.ring) is_at_tip[near] = 1;
+    }
     Start worst;
-    for (std::uint32_t i = 0; i < may_start_.size(); ++i) {
-        if (may_start_[i] == 0 || held[i] != 0 || !(tension[i] > area[i] * strength_)) continue;
+    for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+        if (is_at_tip[i] != 0 || held[i] != 0 || !(tension[i] > area[i] * strength_)) continue;
         Start start = start_at(i, triangles, stress);
         if (start.excess > worst.excess && !start.edges.empty()) worst = std::move(start);
     }
     return worst;
 }
 
-// Cuts so many edges that lie nearest to the direction, up to a hem.
-void SheetTear::run_on(std::uint32_t tip, Vec3 direction, double edges, std::vector<SheetEdge>& cut) const {
+// Cuts so many edges that lie nearest to the direction, up to a hem or a held node.
+void SheetTear::run_on(std::uint32_t tip, Vec3 direction, double edges, std::span<const std::uint8_t> held,
+                       std::vector<SheetEdge>& cut) const {
+    bool is_inside = false;
     for (double left = edges; left >= 1; --left) {
         const std::vector<NodeFan> fans = fans_.around(tip);
-        if (fans.size() != 1) return;
+        if (fans.size() != 1 || (is_inside && !fans[0].is_closed())) return;
         double most = 0;
         std::uint32_t next = tip;
         const std::vector<std::uint32_t>& spokes = fans[0].spokes;
-        const bool is_first = left == edges;
-        if (!is_first && !fans[0].is_closed()) return;
-        for (std::size_t k = is_first ? 1 : 0; k + 1 < spokes.size(); ++k) {
+        for (std::size_t k = is_inside ? 0 : 1; k + 1 < spokes.size(); ++k) {
             const double along = dot(direction, normalized(rest_[spokes[k]] - rest_[tip]));
             if (along > most) {
                 most = along;
@@ -171,7 +185,9 @@ void SheetTear::run_on(std::uint32_t tip, Vec3 direction, double edges, std::vec
         }
         if (next == tip) return;
         cut.push_back(edge_between(tip, next));
+        if (held[next] != 0) return;
         tip = next;
+        is_inside = true;
     }
 }
 
@@ -181,13 +197,15 @@ std::vector<TornCorner> SheetTear::find(std::span<const ClothTriangle> triangles
     for (const Tip& tip : tips_) {
         if (held[tip.node] != 0) continue;
         const Vec3 release = release_at(tip, triangles, stress, held);
-        if (length(release) >= energy_) run_on(tip.node, normalized(release), length(release) / energy_, cut);
+        if (length(release) >= energy_) run_on(tip.node, normalized(release), length(release) / energy_, held, cut);
     }
     if (!std::isinf(strength_)) {
         const Start worst = find_start(triangles, stress, held);
         cut.insert(cut.end(), worst.edges.begin(), worst.edges.end());
     }
-    return cut.empty() ? std::vector<TornCorner>() : fans_.split(cut, held);
+    std::vector<std::uint32_t> loose;
+    std::ranges::copy_if(stitches_, std::back_inserter(loose), [&](std::uint32_t node) { return held[node] == 0; });
+    return cut.empty() && loose.empty() ? std::vector<TornCorner>() : fans_.split(std::move(cut), held, loose);
 }
 
 }  // namespace embody::physics::deformable

@@ -37,6 +37,7 @@ public:
 private:
     struct Tip {
         std::uint32_t node = 0;
+        std::vector<std::uint32_t> ring;       // nodes beside it
         std::vector<std::uint32_t> around;     // nodes that are shifted with the tip, and the tip
         std::vector<std::uint32_t> triangles;  // at these
     };
@@ -47,7 +48,9 @@ private:
     [[nodiscard]] Tip tip_at(std::uint32_t node, const NodeFan& fan) const;
     [[nodiscard]] Vec3 release_at(const Tip& tip, std::span<const ClothTriangle> triangles,
                                   std::span<const SheetStress> stress, std::span<const std::uint8_t> held) const;
-    void run_on(std::uint32_t tip, Vec3 direction, double edges, std::vector<SheetEdge>& cut) const;
+    [[nodiscard]] bool is_stitch(std::span<const NodeFan> fans) const;
+    void run_on(std::uint32_t tip, Vec3 direction, double edges, std::span<const std::uint8_t> held,
+                std::vector<SheetEdge>& cut) const;
     [[nodiscard]] Start start_at(std::uint32_t node, std::span<const ClothTriangle> triangles,
                                  std::span<const SheetStress> stress) const;
     [[nodiscard]] Start find_start(std::span<const ClothTriangle> triangles, std::span<const SheetStress> stress,
@@ -57,7 +60,7 @@ private:
     std::vector<Vec3> rest_;
     NodeFans fans_;
     std::vector<Tip> tips_;
-    std::vector<std::uint8_t> may_start_;    // by node: no tip is near that goes on by its energy
+    std::vector<std::uint32_t> stitches_;    // nodes that alone join the sides of slits
     std::vector<std::array<Vec3, 2>> axes_;  // of the triangles at rest: along warp and weft
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/free_motion.h"
 
+#include <algorithm>
+
 namespace embody::physics::deformable {
 
 void keep_momenta(std::span<const FreePart> parts, double h, const ThinContactSettings& settings) {
@@ -87,6 +89,16 @@ WholeMotion motion_of_whole(const Nodes& nodes) {
     return {momentum / mass, solve(inertia, turning), mass, center, inertia};
 }
 
+void change_substep(Nodes& nodes, double h, Vec3 acceleration, bool is_free) {
+    const double last = nodes.substep, back = (h - last) / 2;
+    nodes.substep = h;
+    const auto rests = [&] { return std::ranges::all_of(nodes.mean_velocity, [](Vec3 v) { return v == Vec3{}; }); };
+    if (back == 0 || (last > 0 ? !is_free : rests())) return;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes.inverse_mass[i] > 0) nodes.mean_velocity[i] -= back * acceleration;
+    }
+}
+
 void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
     double mass = 0;
     Vec3 change;
@@ -95,6 +107,7 @@ void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
         change += nodes.mass[i] * (moves[i] / h - nodes.mean_velocity[i]);
     }
     const Vec3 half = change / (2 * mass);
+    nodes.substep = h;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         nodes.mean_velocity[i] = moves[i] / h;
         nodes.velocity[i] = nodes.inverse_mass[i] > 0 ? nodes.mean_velocity[i] + half : Vec3{};

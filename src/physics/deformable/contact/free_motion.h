@@ -45,6 +45,13 @@ struct WholeMotion {
 };
 [[nodiscard]] WholeMotion motion_of_whole(const Nodes& nodes);
 
+/// Makes the mean velocities those of a substep of h seconds that ends now: the velocity of h/2 ago. So what begins
+/// with the velocity of an instant, or goes on with substeps of another length, falls on as it did. Turns are not taken
+/// back: either the angular momentum or the energy would be another one than was given.
+/// `acceleration`: of all nodes, m/s². `is_free`: whether nothing else acts on them; else what goes on is not changed.
+/// Nor is what begins at rest: it may lie or hang in balance, which a fall taken back would disturb.
+void change_substep(Nodes& nodes, double h, Vec3 acceleration, bool is_free);
+
 /// Sets the velocities after a substep of h seconds in which nodes have moved by `moves` (m): the mean ones; those at
 /// the end are these plus half of the last change of the whole's velocity, which is exact for a free fall. Half of each
 /// node's own change would make a fast spin look faster than it is.

@@ -26,6 +26,7 @@ struct NodeFlow {
 struct Nodes {
     std::vector<Vec3> position;        ///< world, m
     std::vector<Vec3> mean_velocity;   ///< over the last substep, m/s: what carries the motion
+    double substep = 0;                ///< length of that, s; 0: the mean velocities are those of the present instant
     std::vector<Vec3> velocity;        ///< at its end, m/s: `set_velocities`
     std::vector<double> mass;          ///< kg
     std::vector<double> inverse_mass;  ///< 1/kg; 0: pinned

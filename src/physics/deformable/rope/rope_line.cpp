@@ -330,6 +330,7 @@ void RopeLine::go_on_from(const RopeLine& other) {
     const std::vector<Clamp> own = clamps_.clamps();
     clamps_ = other.clamps_;
     clamps_.set(own);
+    nodes_.substep = other.nodes_.substep;
     springs_.go_on_from(other.springs_);
     folds_.go_on_from(other.folds_);
 }

@@ -85,6 +85,9 @@ ThinGroupPart::ThinGroupPart(const DeformableAccess& world, const ThinGroup& gro
             member.substep = substep_of(world, *one.record, h, time);
             member.first = moves_.size();
             member.count = one.record->nodes().size();
+            member.mean_velocity = one.record->nodes().mean_velocity;
+            member.last_substep = one.record->nodes().substep;
+            one.record->begin_substep(h, world.settings.gravity, group.members.size() == 1);
             for (const Vec3 velocity : one.record->nodes().mean_velocity) moves_.push_back(h * velocity);
         }
         if (is_sheet) sheets_ = members_.size();
@@ -567,12 +570,21 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     }
 }
 
+// A shorter part begins with other mean velocities.
+void ThinGroupPart::take_back() {
+    for (Member& member : members_)
+        member.record().set_mean_velocities(std::move(member.mean_velocity), member.last_substep);
+}
+
 bool ThinGroupPart::advance(std::span<TouchedBody> bodies, bool is_shortest) {
     const bool is_sheet_alone = members_.size() == 1 && sheets_ == 1;
     if (is_sheet_alone && members_[0].record().cloth()->is_frozen()) return true;
     begin(bodies);
     const Outcome outcome = solve(bodies, is_shortest);
-    if (outcome == Outcome::too_fast) return false;
+    if (outcome == Outcome::too_fast) {
+        take_back();
+        return false;
+    }
     if (outcome == Outcome::solved) {
         end(bodies);
         return true;

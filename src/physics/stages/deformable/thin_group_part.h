@@ -26,6 +26,8 @@ private:
         Substep substep;
         std::size_t first = 0, count = 0;  // of its nodes among all
         TouchSprings touch;                // as the last solve had them
+        std::vector<Vec3> mean_velocity;   // before the part, m/s
+        double last_substep = 0;           // as Nodes::substep before the part
         std::vector<std::array<std::uint32_t, 2>> segments;
         [[nodiscard]] DeformableRecord& record() const { return *thin->record; }
     };
@@ -62,6 +64,7 @@ private:
     void keep_momenta();
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
+    void take_back();
 
     const DeformableAccess world_;
     const ThinGroup& group_;

@@ -116,6 +116,7 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
     }
     ThinDeformable& first_member = thin[group.members[0]];
     if (group.members.size() == 1 && first_member.record->rope()) {
+        first_member.record->begin_substep(h, world.settings.gravity, true);
         advance_rope(first_member, substep_of(world, *first_member.record, h, time), bodies);
         note_breaks(world, *first_member.record);
     } else {

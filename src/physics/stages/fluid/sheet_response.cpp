@@ -116,9 +116,9 @@ std::vector<Vec3> SheetResponse::free_velocities(Sheet& sheet, double h, const I
     return free;
 }
 
-// The sheet's moves from the beginning of the step to the end of the part, h seconds later. False where numbers became
-// non-finite.
-bool SheetResponse::solve(const Sheet& sheet, double h, const std::vector<Vec3>& free, std::vector<Vec3>& moves) const {
+// The sheet's moves from the beginning of the step to the end of the part, h seconds later, from those found before in
+// this part. False where numbers became non-finite.
+bool SheetResponse::solve(Sheet& sheet, double h, const std::vector<Vec3>& free) const {
     DeformableRecord& record = world_.immersed.records.at(sheet.part.slot);
     const Nodes& nodes = record.nodes();
     const std::vector<Vec3> by_others = nodes.force;  // liquids that have moved before this one; may be empty
@@ -127,7 +127,7 @@ bool SheetResponse::solve(const Sheet& sheet, double h, const std::vector<Vec3>&
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         force[i] = nodes.force_on(i) + (sheet.pressed[i] + sheet.by_liquid[i]) / h;
         flow[i] = {sheet.bound[i] / h, free[i], {}};
-        moves[i] = h * nodes.mean_velocity[i];
+        if (sheet.moves.size() == i) sheet.moves.push_back(h * nodes.mean_velocity[i]);
     }
     record.set_liquid_force(force);
     record.set_flow(std::move(flow));
@@ -140,7 +140,7 @@ bool SheetResponse::solve(const Sheet& sheet, double h, const std::vector<Vec3>&
     const SheetSystem system = record.cloth()->system();
     ClothSolver& solver = world_.immersed.pair_solver;
     solver.set(substep.settings.cloth);
-    const int iterations = solver.solve(std::span(&system, 1), {}, {}, {}, moves, {}, world_.workers);
+    const int iterations = solver.solve(std::span(&system, 1), {}, {}, {}, sheet.moves, {}, world_.workers);
     record.set_liquid_force(by_others);
     record.set_flow({});
     return iterations != ClothSolver::not_finite;
@@ -154,15 +154,14 @@ bool SheetResponse::improve(Sheet& sheet, double dt, const ImmersedPoints& found
     const std::vector<Vec3> free = free_velocities(sheet, h, found);
     const FluidObstacleSettings& settings = world_.settings.solver.fluid.obstacles;
     if (solves_ >= settings.max_sheet_solves) return false;
-    std::vector<Vec3> moves(count);
-    if (!solve(sheet, h, free, moves)) return false;
+    if (!solve(sheet, h, free)) return false;
     const double min_pull = world_.settings.solver.deformable.thin_contact.min_gravity;
     const double change = std::max(length(pull_on(sheet)), min_pull) * dt;  // m/s, by gravity
     std::vector<Vec3> error(count), weight(count);
     double found_energy = 0, limit = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (!(nodes.inverse_mass[i] > 0)) continue;
-        const Vec3 all = alike(nodes.mass[i]) + sheet.bound[i], difference = moves[i] / h - free[i];
+        const Vec3 all = alike(nodes.mass[i]) + sheet.bound[i], difference = sheet.moves[i] / h - free[i];
         error[i] = scale(all, difference);
         weight[i] = {1 / all.x, 1 / all.y, 1 / all.z};
         found_energy += dot(error[i], difference);
@@ -181,6 +180,7 @@ void SheetResponse::end_part(double dt) {
             sheet.supported[i] += sheet.impulse[i];
         }
         sheet.mixing.clear();
+        sheet.moves.clear();
     }
     elapsed_ += dt;
     solves_ = 0;

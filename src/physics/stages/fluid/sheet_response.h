@@ -27,6 +27,7 @@ private:
         std::vector<Vec3> pressed, supported;     // impulses of liquid and elastic forces in the parts before, N s
         std::vector<Vec3> impulse;                // of elastic forces that this part was solved with, N s
         std::vector<Vec3> by_liquid;              // that it found, N s
+        std::vector<Vec3> moves;                  // last found in this part, m; none before
         std::vector<Vec3> bound, bound_of_point;  // liquid that nodes and points hold in this part, by axis, kg
         AndersonMixing mixing;
     };
@@ -35,8 +36,7 @@ private:
     void bind(Sheet& sheet, const ImmersedPoints& found) const;
     void set_supports(const Sheet& sheet, double dt);
     [[nodiscard]] std::vector<Vec3> free_velocities(Sheet& sheet, double h, const ImmersedPoints& found) const;
-    [[nodiscard]] bool solve(const Sheet& sheet, double h, const std::vector<Vec3>& free,
-                             std::vector<Vec3>& moves) const;
+    [[nodiscard]] bool solve(Sheet& sheet, double h, const std::vector<Vec3>& free) const;
     [[nodiscard]] bool improve(Sheet& sheet, double dt, const ImmersedPoints& found);
     void end_part(double dt);
 

@@ -109,7 +109,7 @@ Sweep sweep_of(const ContinuousAccess& world, std::uint32_t body) {
     if (!takes_part(world, body)) return {world.rigid.pose(body), world.rigid.pose(body), {}};
     BodyState start = world.rigid.motion[body];
     start.center = start.start_center;
-    start.rotation = start.start_rotation;
+    if (!world.rigid.record(body).is_ball) start.rotation = start.start_rotation;  // a ball's turn sweeps nothing
     const Vec3 center = world.rigid.constants[body].local_center;
     return {body_pose(start, center), world.rigid.pose(body), center};
 }
@@ -153,13 +153,31 @@ void follow_paths(const ContinuousAccess& world) {
     world.contacts.pairs = &world.contacts.broad_phase.update_pairs(world.workers);
 }
 
-std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
-                                   const Sweep& path_b) {
+// Whether the balls around two bodies tell that they do not meet: they stay further apart than a touch on the whole
+// path, or are the bodies themselves and touch from the start, which counts as no impact.
+bool do_not_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
+    const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
+    if (ra.reach == 0 || rb.reach == 0) return false;  // planes and surfaces have no ball
+    const auto start_of = [&](std::uint32_t body) {
+        const BodyState& state = world.rigid.motion[body];
+        return takes_part(world, body) ? state.start_center : state.center;
+    };
+    const double touch = ra.reach + rb.reach + world.settings.solver.collision.continuous_gap;
+    const Vec3 apart = start_of(b) - start_of(a);
+    if (ra.is_ball && rb.is_ball && length_squared(apart) <= touch * touch) return true;
+    const Vec3 moved = world.rigid.motion[b].center - start_of(b) - (world.rigid.motion[a].center - start_of(a));
+    const double squared = length_squared(moved);
+    const double nearest = squared > 0 ? std::clamp(-dot(apart, moved) / squared, 0.0, 1.0) : 0;
+    return length_squared(apart + nearest * moved) > touch * touch;
+}
+
+std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
+    if (do_not_meet(world, a, b)) return std::nullopt;
     // Maximum depth at which sliding or rolling along a body ends in it.
     const BodyRecord& record = world.rigid.record(a);
     const CollisionSettings& settings = world.settings.solver.collision;
     const double harmless = record.definition.continuous ? 0 : settings.continuous_slide_fraction * record.inner_radius;
-    return time_of_impact(*record.shape, path_a, *world.rigid.record(b).shape, path_b,
+    return time_of_impact(*record.shape, sweep_of(world, a), *world.rigid.record(b).shape, sweep_of(world, b),
                           {settings.continuous_gap / 2, settings.continuous_gap, harmless});
 }
 
@@ -229,6 +247,20 @@ std::vector<Passing> list_passings(const ContinuousAccess& world, const std::vec
     return passings;
 }
 
+// When the bodies of each passing that `counts` meet, by its number.
+template <class Counts>
+std::vector<std::optional<double>> meeting_times(const ContinuousAccess& world, const std::vector<Passing>& passings,
+                                                 const std::vector<FastBody>& fast, Counts counts) {
+    constexpr std::size_t min_parallel_count = 32;  // passings; waking the workers costs as many
+    std::vector<std::optional<double>> times(passings.size());
+    parallel_for(world.workers, passings.size(), passings.size() >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t k = range.first; k < range.last; ++k) {
+            if (counts(passings[k])) times[k] = meeting_time(world, fast[passings[k].first].body, passings[k].other);
+        }
+    });
+    return times;
+}
+
 // For the rest of the step two that met go along with their common centre of mass, as if they stuck to each other: else
 // what meets in a heap that flies would fall behind the heap.
 Vec3 common_motion(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
@@ -242,13 +274,10 @@ Vec3 common_motion(const ContinuousAccess& world, std::uint32_t a, std::uint32_t
 // Fast bodies that meet each other stop where they meet, the earliest first; a stopped body is met no more.
 void stop_at_meetings(const ContinuousAccess& world, const std::vector<Passing>& passings,
                       std::vector<FastBody>& fast) {
+    const auto times = meeting_times(world, passings, fast, [&](const Passing& p) { return p.second != fast.size(); });
     std::vector<Meeting> meetings;
-    for (const Passing& passing : passings) {
-        if (passing.second == fast.size()) continue;
-        const std::uint32_t body = fast[passing.first].body;
-        const auto time =
-            meeting_time(world, body, passing.other, sweep_of(world, body), sweep_of(world, passing.other));
-        if (time) meetings.push_back({*time, passing.first, passing.second});
+    for (std::size_t k = 0; k < passings.size(); ++k) {
+        if (const auto& time = times[k]) meetings.push_back({*time, passings[k].first, passings[k].second});
     }
     std::stable_sort(meetings.begin(), meetings.end(),
                      [](const Meeting& m, const Meeting& n) { return m.time < n.time; });
@@ -263,18 +292,19 @@ void stop_at_meetings(const ContinuousAccess& world, const std::vector<Passing>&
 
 // On the rest of its path each stops where it first touches something that is not fast itself, and goes along with it.
 void stop_at_touches(const ContinuousAccess& world, const std::vector<Passing>& passings, std::vector<FastBody>& fast) {
+    // A body that rolls along a surface has followed the surface; a straight line between its ends would cut into
+    // edges.
+    const auto times = meeting_times(world, passings, fast, [&](const Passing& p) {
+        return p.second == fast.size() && !has_rolled_along(world, fast[p.first].body, p.other);
+    });
     for (FastBody& each : fast) each.fraction = 1;
-    for (const Passing& passing : passings) {
-        // A body that rolls along a surface has followed the surface; a straight line between its ends would cut into
-        // edges.
-        FastBody& each = fast[passing.first];
-        if (passing.second != fast.size() || has_rolled_along(world, each.body, passing.other)) continue;
-        const auto time =
-            meeting_time(world, each.body, passing.other, sweep_of(world, each.body), sweep_of(world, passing.other));
+    for (std::size_t k = 0; k < passings.size(); ++k) {
+        FastBody& each = fast[passings[k].first];
+        const auto& time = times[k];
         if (!time || *time >= each.fraction) continue;
         each.fraction = *time;
         const Vec3 start = world.rigid.motion[each.body].start_center;
-        each.along = carried(world, passing.other, start) * (1 - *time);
+        each.along = carried(world, passings[k].other, start) * (1 - *time);
     }
     for (const FastBody& each : fast) put_back(world, each);
 }

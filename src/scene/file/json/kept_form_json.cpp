@@ -73,7 +73,9 @@ void check_value(FieldReader& reader, const KeptForm& kept) {
     if (kept.plastic_strain.values.size() % numbers_per_strain != 0)
         return reader.refuse("plastic_strain", "must be five numbers each: xx, yy, xy, xz, yz");
     if (kept.bend.values.size() % numbers_per_bend != 0)
-        return reader.refuse("bend", "must be six numbers each: xx, yy and √2 xy of friction, then of folds");
+        return reader.refuse("bend",
+                             "must be six numbers each: of a triangle xx, yy and √2 xy of friction, then of folds; of "
+                             "a wire's node two each of three folds");
     if (kept.torn.size() % numbers_per_tear != 0)
         return reader.refuse("torn", "must be three numbers each: corner, node before, node");
     if (!std::ranges::is_sorted(kept.broken)) reader.refuse("broken", "must be ascending");

@@ -217,13 +217,17 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
     EntityIndex index = 0;
+    std::uint32_t wanted = 0;
     need_index(reader, "index", index);
+    reader.whole("points", wanted);
     if (!reader.finish()) return *error;
     const SoftNodes* soft = as_soft(state.simulation->points(index));
     if (!soft) return json{{"mesh", nullptr}};
     // A sheet that tore later has fewer nodes at the moment that is shown.
     std::size_t points = soft->definition().nodes.size();
-    if (state.past.shown) {
+    if (wanted > 0) {
+        points = wanted;
+    } else if (state.past.shown) {
         const auto was = std::ranges::find(state.past.shown->entities, index,
                                            [](const EntityMoment& each) { return each.motion.entity; });
         if (was != state.past.shown->entities.end() && was->points) points = was->points->count();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -109,10 +110,19 @@ struct Weight {
     Vec3 center;  ///< of mass, in the entity's frame, m
     double mass = 0;
     Mat3 inertia{};
+    /// Points whose mean place counts: of a sheet that has torn those that it had when it was whole, so that the mean
+    /// does not jump where it gets new ones.
+    std::size_t points = std::numeric_limits<std::size_t>::max();
 };
 
-Weight weight_of(const Simulation& simulation, EntityIndex index) {
+Weight weight_of(const SessionState& state, EntityIndex index) {
+    const Simulation& simulation = *state.simulation;
     Weight weight;
+    if (const auto known = state.past.torn.find(index); known != state.past.torn.end()) {
+        for (const Past::Torn& torn : known->second)
+            for (const physics::TornCorner& corner : torn.corners)
+                weight.points = std::min<std::size_t>(weight.points, corner.node);
+    }
     if (const MovingPoints* points = simulation.points(index)) {
         weight.mass = points->mass();
         return weight;
@@ -140,6 +150,7 @@ double value_of(Quantity quantity, const EntityMoment& was, const Weight& weight
     if (was.points) {
         std::vector<Vec3> positions;
         was.points->read(positions);
+        positions.resize(std::min(positions.size(), weight.points));
         center = {};
         for (const Vec3 p : positions) center += p / static_cast<double>(positions.size());
     }
@@ -192,7 +203,7 @@ Result<json> curves(SessionState& state, const json& params) {
     std::set<EntityIndex> indices;
     std::map<EntityIndex, Weight> weights;
     for (const Curve& curve : asked)
-        if (indices.insert(curve.index).second) weights[curve.index] = weight_of(*state.simulation, curve.index);
+        if (indices.insert(curve.index).second) weights[curve.index] = weight_of(state, curve.index);
     const std::vector<double> times = chosen_times(state.past.take, from, to, samples);
     for (const double time : times) {
         const Moment moment = state.past.take.at(time, &indices);
