@@ -22,11 +22,11 @@ void leave_out_held(const ThinSurface& a, const ThinSurface& b, const HeldNodes&
     if (held.of_a.empty() && held.of_b.empty()) return;
     std::erase_if(candidates, [&](const ThinCandidate& candidate) {
         const ThinSurface &one = candidate.is_swapped ? b : a, &two = candidate.is_swapped ? a : b;
-        using Nodes = std::span<const std::uint32_t>;
-        const Nodes first = candidate.kind == ThinFeature::edge_on_edge ? Nodes(one.edges[candidate.first])
-                                                                        : Nodes(&candidate.first, 1);
-        const Nodes second = candidate.kind == ThinFeature::node_on_triangle ? Nodes(two.triangles[candidate.second])
-                                                                             : Nodes(two.edges[candidate.second]);
+        using List = std::span<const std::uint32_t>;
+        const List first =
+            candidate.kind == ThinFeature::edge_on_edge ? List(one.edges[candidate.first]) : List(&candidate.first, 1);
+        const List second = candidate.kind == ThinFeature::node_on_triangle ? List(two.triangles[candidate.second])
+                                                                            : List(two.edges[candidate.second]);
         return held.hold(candidate.is_swapped, first, second);
     });
 }

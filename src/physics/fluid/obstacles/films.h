@@ -37,7 +37,7 @@ private:
         int begin = -1;  // the liquid cell at which the film begins
         Pressure pressure;
     };
-    [[nodiscard]] FilmCell& at(const FluidGrid& grid, int cell);
+    FilmCell& at(const FluidGrid& grid, int cell);
     [[nodiscard]] bool is_closed(const FluidGrid& grid, int axis, int face) const;
 
     std::vector<FilmCell> cells_;
