@@ -39,7 +39,9 @@ public:
             for (const std::uint32_t body : one.attachment_bodies) mark(body);
         }
         for (const SolidContact& contact : of_solids) {
-            if (contact.has_body()) is_borne_[contact.body] = false;
+            if (!contact.has_body()) continue;
+            mark(contact.body);
+            bodies_[contact.body].touches_solid = true;
         }
     }
 
@@ -47,7 +49,10 @@ public:
     [[nodiscard]] TouchedBody* find(std::uint32_t slot) const {
         const auto found = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
         if (found == bodies_.end() || found->body != slot || !(found->inverse_mass > 0)) return nullptr;
-        return is_borne_[static_cast<std::size_t>(found - bodies_.begin())] ? &*found : nullptr;
+        return &*found;
+    }
+    [[nodiscard]] bool gets_supports(const TouchedBody& body) const {
+        return is_borne_[static_cast<std::size_t>(&body - bodies_.data())];
     }
 
 private:
@@ -115,19 +120,26 @@ void find_supports(const DeformableAccess& world, std::span<const SolidContact> 
                    std::span<const ThinDeformable> thin, std::span<TouchedBody> bodies) {
     if (bodies.empty()) return;
     const BorneBodies borne(of_solids, thin, bodies);
+    const auto for_side = [&](std::uint32_t slot, bool pushes, bool stands, const auto& add) {
+        TouchedBody* const body = borne.find(slot);
+        if (body == nullptr) return;
+        body->is_borne = body->is_borne || pushes;
+        if (stands && borne.gets_supports(*body)) add(*body);
+    };
     for (const Contact& contact : world.contacts.list) {
-        if (!is_movable(world, contact.b)) {
-            if (TouchedBody* body = borne.find(contact.a)) add_contact(world, contact, true, *body);
-        } else if (!is_movable(world, contact.a)) {
-            if (TouchedBody* body = borne.find(contact.b)) add_contact(world, contact, false, *body);
+        double total = 0;
+        for (int k = 0; k < contact.count; ++k) total += contact.points[static_cast<std::size_t>(k)].total;
+        for (const bool is_a : {true, false}) {
+            for_side(is_a ? contact.a : contact.b, total > 0, !is_movable(world, is_a ? contact.b : contact.a),
+                     [&](TouchedBody& body) { add_contact(world, contact, is_a, body); });
         }
     }
     for (const Joint& joint : world.joints.active) {
-        if (joint.a_is_world || !is_movable(world, joint.a)) {
-            if (TouchedBody* body = borne.find(joint.b)) add_joint(world, joint, false, *body);
-        } else if (!is_movable(world, joint.b)) {
-            if (TouchedBody* body = borne.find(joint.a)) add_joint(world, joint, true, *body);
-        }
+        for_side(joint.b, true, joint.a_is_world || !is_movable(world, joint.a),
+                 [&](TouchedBody& body) { add_joint(world, joint, false, body); });
+        if (joint.a_is_world) continue;
+        for_side(joint.a, true, !is_movable(world, joint.b),
+                 [&](TouchedBody& body) { add_joint(world, joint, true, body); });
     }
     for (TouchedBody& body : bodies) body.set_borne_forces();
 }
