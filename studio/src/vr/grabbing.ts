@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Box3, Matrix4, Quaternion, Vector3 } from "three";
+import type { Simulation } from "../connection/messages";
 import type { Parts } from "../parts";
 import { Signal } from "../signal";
 import { scaleEntities } from "../tools/gizmo";
@@ -48,6 +49,8 @@ export class Grabbing {
   private readonly drags = new Map<number, PoseDrag>();
   /** With two hands on one thing: it and the hands when the second one came. */
   private pair: { room: number; along: Vector3; middle: Vector3; position: Vector3; rotation: Quaternion; scale: number } | null = null;
+  /** State and step of the run when it was last told. */
+  private run: Pick<Simulation, "state" | "step"> = { state: "stopped", step: 0 };
   private factor = 1;
   private shown = 1;
   private readonly frame = { position: new Vector3(), rotation: new Quaternion() };
@@ -66,8 +69,13 @@ export class Grabbing {
     private readonly hands: Hands,
     private readonly stance: Stance,
   ) {
-    // Held things change hands with the state: what the run held is let go, what was being placed is put down.
-    parts.playback.changed.on(() => this.releaseAll());
+    // Held things change hands with the state: what the run held is let go, what was being placed is put down. A run that
+    // only became slower, faster or longer goes on, and so does the hold.
+    parts.playback.changed.on(() => {
+      const { state, step } = parts.playback.simulation;
+      if (state !== this.run.state || step < this.run.step) this.releaseAll();
+      this.run = { state, step };
+    });
     parts.document.changed.on(({ all, removed }) => {
       for (const side of ["left", "right"] as const) if (all || removed.includes(this.holds[side]?.index ?? -1)) this.release(side);
     });
