@@ -25,6 +25,14 @@ double BandCholesky::diagonal_mean(std::size_t i) const {
     return (at(3 * i, 3 * i) + at(3 * i + 1, 3 * i + 1) + at(3 * i + 2, 3 * i + 2)) / 3;
 }
 
+Mat3 BandCholesky::diagonal_block(std::size_t i) const {
+    const auto element = [&](std::size_t r, std::size_t c) {
+        return at(3 * i + std::max(r, c), 3 * i + std::min(r, c));
+    };
+    const auto column = [&](std::size_t c) { return Vec3{element(0, c), element(1, c), element(2, c)}; };
+    return {column(0), column(1), column(2)};
+}
+
 void BandCholesky::fix(std::size_t i) {
     for (std::size_t r = 3 * i; r < 3 * i + 3; ++r) {
         rows_[r] = Row{};

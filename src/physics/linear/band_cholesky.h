@@ -20,6 +20,8 @@ public:
     /// Adds to block (i, k), |i - k| <= 2; only i >= k are kept, so give each pair once.
     void add(std::size_t i, std::size_t k, const Mat3& block);
     void add_diagonal(std::size_t i, double value);
+    /// Before factorize().
+    [[nodiscard]] Mat3 diagonal_block(std::size_t i) const;
     [[nodiscard]] double diagonal_mean(std::size_t i) const;
     /// Number (i, k) of the lower triangle, i - 8 <= k <= i; rows and columns are those of numbers, three a block.
     [[nodiscard]] double element(std::size_t i, std::size_t k) const { return at(i, k); }

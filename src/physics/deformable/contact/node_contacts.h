@@ -13,8 +13,9 @@ namespace embody::physics::deformable {
 /// A node over a plane of a body, which moves with the body.
 struct NodeContact {
     std::uint32_t node = 0, body = 0;  ///< body: index in the list of bodies
-    Vec3 anchor, normal;  ///< of the plane, from the centre of mass, when the step began; normal to the node
-    Vec3 velocity;        ///< velocity of the surface besides the body's own, m/s
+    Vec3 anchor, normal;       ///< of the plane, from the centre of mass, when the step began; normal to the node
+    Vec3 velocity;             ///< velocity of the surface besides the body's own, m/s
+    bool is_foreseen = false;  ///< the anchor is below where the node will be when the substep ends
 };
 
 /// Appends, for every one of `candidates` that may come closer than `radius` (m) to a body within `time_step` (s), the

@@ -56,6 +56,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     const ThinContactSettings& settings = substep.settings.thin_contact;
     const TouchedBody& body = bodies[plane.body];
     const Place& place = places_[plane.body];
+    spring.normal = place.rotation * plane.normal;
     Vec3 point, velocity;
     bool is_free = false;
     double compliance = 0;  // 1/kg
@@ -63,22 +64,28 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
         const std::uint32_t node = spring.node[k];
         point += spring.weight[k] * nodes.position[node];
         velocity += spring.weight[k] * nodes.mean_velocity[node];
-        if (!node_stiffness.empty())
-            spring.stiffness = std::max(spring.stiffness, settings.stiffness_factor * node_stiffness[node]);
+        if (!node_stiffness.empty()) {
+            const double wanted = directed_stiffness.empty()
+                                      ? settings.stiffness_factor * node_stiffness[node]
+                                      : substep.settings.rope.contact_stiffness_factor *
+                                            dot(spring.normal, directed_stiffness[node] * spring.normal);
+            spring.stiffness = std::max(spring.stiffness, wanted);
+        }
         spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
         compliance += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
         is_free |= nodes.inverse_mass[node] > 0;
     }
     spring.body = plane.body;
     spring.predicts_slip = predicts_slip;
-    spring.normal = place.rotation * plane.normal;
     spring.arm = place.rotation * plane.anchor;
     const Vec3 offset = point - place.center - spring.arm;
     spring.gap = dot(offset, spring.normal) - radius;
     // The point's own travel within the substep, and that by gravity.
     const double reach = (length(velocity) + length(substep.gravity) * substep.h) * substep.h + radius;
     if (!is_free || spring.gap > reach) return;
-    spring.arm += across(offset, spring.normal);
+    if (!plane.is_foreseen) spring.arm += across(offset, spring.normal);
+    // A rope's forces act at its line: so angular momentum is kept, and what turns with a drum winds up at R + r.
+    if (!directed_stiffness.empty()) spring.arm += radius * spring.normal;
     spring.friction = friction_between(material, body.material, *substep.surface_pairs);
     spring.carried = place.displacement_of(spring.arm) + substep.h * plane.velocity;
     const Mat3 turning = skew(spring.arm);
@@ -208,7 +215,26 @@ void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::s
                        .weight = {1 - contact.along, contact.along},
                        .count = 2,
                        .feature = {contact.node, contact.node + 1}};
+    const std::size_t before = springs_.size();
     complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
+    if (springs_.size() > before && contact.curvature_radius > 0) add_rolling(nodes, contact, substep);
+}
+
+// A segment that tilts on a round body touches it farther along, by the radius of curvature ρ times the angle, so its
+// push N rights it with the moment N ρ a radian: as stiff as the line's tension. Contacts of the substep's start would
+// have it one substep late, and the segments would zigzag. Off the tilt that the contact was found with.
+void TouchSprings::add_rolling(const Nodes& nodes, const SegmentContact& contact, const Substep& substep) {
+    const TouchSpring& touch = springs_.back();
+    const std::uint32_t a = contact.node, b = contact.node + 1;
+    const double squared = length_squared(nodes.position[b] - nodes.position[a]);
+    const double push = dot(touch.pull, touch.normal);
+    if (!(push > 0 && squared > 0)) return;
+    TouchSpring rolling{.node = {a, b}, .weight = {-1, 1}, .count = 2, .is_attachment = true, .normal = touch.normal};
+    rolling.stiffness = push * contact.curvature_radius / squared;
+    rolling.matrix = rolling.stiffness * outer(touch.normal, touch.normal);
+    rolling.load = rolling.matrix * (substep.h * (nodes.mean_velocity[b] - nodes.mean_velocity[a]));
+    rolling.acts = true;
+    springs_.push_back(rolling);
 }
 
 // Along its circle: the error of a straight path would pull a stiff rope that sticks to a turning drum.
@@ -263,6 +289,7 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
     SpringChange sum;
     for (TouchSpring& spring : springs_) {
         if (spring.is_attachment) {
+            if (spring.body == no_body) continue;  // of a rolling segment
             spring.acts = true;
             spring.matrix = spring.stiffness * Mat3::identity();
             spring.load = spring.pull - spring.stiffness * spring.carried;

@@ -17,9 +17,10 @@ namespace embody::physics::deformable {
 
 /// A point between two neighbours of a line, over a plane of a body.
 struct SegmentContact {
-    std::uint32_t node = 0;  ///< the first; the second comes after it
-    double along = 0.5;      ///< 0 … 1 from the first to the second
-    NodeContact plane;       ///< `node` does not count
+    std::uint32_t node = 0;       ///< the first; the second comes after it
+    double along = 0.5;           ///< 0 … 1 from the first to the second
+    NodeContact plane;            ///< `node` does not count
+    double curvature_radius = 0;  ///< of a round body along the line, m; 0: it does not roll there
 };
 
 /// A point of a sheet between two or three of its nodes, over a plane of a body.
@@ -72,6 +73,9 @@ public:
     /// Remembers the less of a force the deeper its node has come into a body: for sheets. Ropes need all of it: one of
     /// 100 kg that lies in a light box would go on through it.
     bool forgets_depth = false;
+    /// Of each node with its neighbours, by direction, N/m, set before begin(): a rope gives way across its line by a
+    /// thousandth of what it does along it. Empty: as begin() is told, in each direction.
+    std::vector<Mat3> directed_stiffness;
     std::vector<Attachment> attachments;           ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
@@ -98,6 +102,8 @@ private:
     // What each node bears of bodies that move, kg.
     [[nodiscard]] std::vector<double> loads_of(std::span<const TouchedBody> bodies, std::size_t node_count) const;
     void bring_back(const Substep& substep, TouchSpring& spring) const;
+    // After the spring of that contact.
+    void add_rolling(const Nodes& nodes, const SegmentContact& contact, const Substep& substep);
     void forget_contradictions(std::span<const TouchedBody> bodies, const Substep& substep, std::size_t node_count);
     void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) const;
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;

@@ -41,10 +41,11 @@ void TouchedBody::enter_substep(double h) {
 void TouchedBody::enter_whole_step(int substeps) {
     const double n = substeps, rest = (1 - (n + 1) / (2 * n)) * step_time * step_time;
     Vec3 late_force = expected_late_force, late_torque = expected_late_torque;
+    const bool was_late = late_force != Vec3{} || late_torque != Vec3{};
     is_settled = false;
     for (BodySupport& support : supports) {
         support.given = (support.past_impulse + step_time / n * support.given) / step_time;
-        if (!is_off_path) continue;
+        if (!was_late) continue;
         late_force -= support.path_force - support.given;
         late_torque -= cross(support.anchor, support.path_force - support.given);
     }

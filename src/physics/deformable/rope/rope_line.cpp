@@ -346,7 +346,11 @@ void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contac
     body_moves_.assign(bodies.size(), {});
     assemble(substep);
     node_stiffness_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) node_stiffness_[i] = system_.band.diagonal_mean(i);
+    springs_.directed_stiffness.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        node_stiffness_[i] = system_.band.diagonal_mean(i);
+        springs_.directed_stiffness[i] = system_.band.diagonal_block(i);
+    }
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SegmentContact& contact : segment_contacts)
         springs_.add(nodes_, contact, bodies, substep, node_stiffness_);
@@ -400,8 +404,16 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     move_nodes(moves_, substep.h);
 }
 
+// What a body bears may be other bodies by the rope: a drum the weights on both sides.
 void RopeLine::begin_supports(const Substep& substep, std::span<const TouchedBody> bodies) {
-    supports_.begin(springs_.springs(), bodies, std::accumulate(nodes_.mass.begin(), nodes_.mass.end(), 0.0), substep);
+    std::vector<std::uint32_t> pulled;
+    for (const TouchSpring& spring : springs_.springs())
+        if (spring.body != no_body && bodies[spring.body].inverse_mass > 0) pulled.push_back(spring.body);
+    std::ranges::sort(pulled);
+    pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+    double mass = std::accumulate(nodes_.mass.begin(), nodes_.mass.end(), 0.0);
+    for (const std::uint32_t body : pulled) mass += 1 / bodies[body].inverse_mass;
+    supports_.begin(springs_.springs(), bodies, mass, substep);
 }
 
 // Of contacts, attachments and supports.

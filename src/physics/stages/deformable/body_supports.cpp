@@ -20,39 +20,46 @@ bool is_movable(const DeformableAccess& world, std::uint32_t slot) {
     return world.rigid.is_dynamic(slot) && !world.activity.is_asleep(slot);
 }
 
-// The bodies that get supports.
+// The bodies that get supports: those beside sheets all of them, those that ropes alone push their joints.
 class BorneBodies {
 public:
     BorneBodies(std::span<const SolidContact> of_solids, std::span<const ThinDeformable> thin,
                 std::span<TouchedBody> bodies)
-        : bodies_(bodies), is_borne_(bodies.size(), false) {
-        const auto mark = [&](std::uint32_t number) {
-            if (number < is_borne_.size()) is_borne_[number] = true;
+        : bodies_(bodies), borne_(bodies.size(), Borne::no) {
+        const auto mark = [&](std::uint32_t number, Borne by) {
+            if (number < borne_.size()) borne_[number] = std::max(borne_[number], by);
         };
         for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-            if (bodies[b].expected_late_force != Vec3{} || bodies[b].expected_late_torque != Vec3{}) mark(b);
+            if (bodies[b].expected_late_force != Vec3{} || bodies[b].expected_late_torque != Vec3{})
+                mark(b, Borne::by_all);
         }
         for (const ThinDeformable& one : thin) {
-            if (one.record->cloth() == nullptr) continue;
-            for (const NodeContact& contact : one.contacts) mark(contact.body);
-            for (const SheetContact& contact : one.sheet_contacts) mark(contact.plane.body);
-            for (const std::uint32_t body : one.attachment_bodies) mark(body);
+            const Borne by = one.record->cloth() ? Borne::by_all : Borne::by_joints;
+            for (const NodeContact& contact : one.contacts) mark(contact.body, by);
+            for (const SheetContact& contact : one.sheet_contacts) mark(contact.plane.body, by);
+            for (const SegmentContact& contact : one.segment_contacts) mark(contact.plane.body, by);
+            for (const std::uint32_t body : one.attachment_bodies) mark(body, by);
         }
         for (const SolidContact& contact : of_solids) {
-            if (contact.has_body()) is_borne_[contact.body] = false;
+            if (contact.has_body()) borne_[contact.body] = Borne::no;
         }
     }
 
     // Null where the body of that slot is none of them.
-    [[nodiscard]] TouchedBody* find(std::uint32_t slot) const {
-        const auto found = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
-        if (found == bodies_.end() || found->body != slot || !(found->inverse_mass > 0)) return nullptr;
-        return is_borne_[static_cast<std::size_t>(found - bodies_.begin())] ? &*found : nullptr;
-    }
+    [[nodiscard]] TouchedBody* find_by_contacts(std::uint32_t slot) const { return find(slot, Borne::by_all); }
+    [[nodiscard]] TouchedBody* find_by_joints(std::uint32_t slot) const { return find(slot, Borne::by_joints); }
 
 private:
+    enum class Borne : std::uint8_t { no, by_joints, by_all };
+
+    [[nodiscard]] TouchedBody* find(std::uint32_t slot, Borne least) const {
+        const auto found = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
+        if (found == bodies_.end() || found->body != slot || !(found->inverse_mass > 0)) return nullptr;
+        return borne_[static_cast<std::size_t>(found - bodies_.begin())] >= least ? &*found : nullptr;
+    }
+
     std::span<TouchedBody> bodies_;
-    std::vector<bool> is_borne_;
+    std::vector<Borne> borne_;
 };
 
 // The points of a contact bear the body on side a or b of it.
@@ -117,16 +124,16 @@ void find_supports(const DeformableAccess& world, std::span<const SolidContact> 
     const BorneBodies borne(of_solids, thin, bodies);
     for (const Contact& contact : world.contacts.list) {
         if (!is_movable(world, contact.b)) {
-            if (TouchedBody* body = borne.find(contact.a)) add_contact(world, contact, true, *body);
+            if (TouchedBody* body = borne.find_by_contacts(contact.a)) add_contact(world, contact, true, *body);
         } else if (!is_movable(world, contact.a)) {
-            if (TouchedBody* body = borne.find(contact.b)) add_contact(world, contact, false, *body);
+            if (TouchedBody* body = borne.find_by_contacts(contact.b)) add_contact(world, contact, false, *body);
         }
     }
     for (const Joint& joint : world.joints.active) {
         if (joint.a_is_world || !is_movable(world, joint.a)) {
-            if (TouchedBody* body = borne.find(joint.b)) add_joint(world, joint, false, *body);
+            if (TouchedBody* body = borne.find_by_joints(joint.b)) add_joint(world, joint, false, *body);
         } else if (!is_movable(world, joint.b)) {
-            if (TouchedBody* body = borne.find(joint.a)) add_joint(world, joint, true, *body);
+            if (TouchedBody* body = borne.find_by_joints(joint.a)) add_joint(world, joint, true, *body);
         }
     }
     for (TouchedBody& body : bodies) body.set_borne_forces();

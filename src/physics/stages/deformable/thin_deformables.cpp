@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/definitions/world_settings.h"
+#include "physics/stages/deformable/round_contacts.h"
 #include "physics/stages/deformable/sheet_contact_search.h"
 
 namespace embody::physics::stages {
@@ -81,6 +82,7 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
 
 void advance_rope(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies) {
     RopeLine& rope = *thin.record->rope();
+    follow_round_bodies(substep, bodies, thin);
     rope.set_attachments(thin.attachments);
     rope.set_clamps(thin.record->definition.clamps);
     rope.advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);

@@ -11,6 +11,7 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/deformable/contact/free_motion.h"
 #include "physics/stages/access.h"
+#include "physics/stages/deformable/round_contacts.h"
 #include "physics/state/deformable_state.h"
 #include "physics/state/event_state.h"
 #include "physics/state/rigid_state.h"
@@ -99,6 +100,7 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies) {
         } else {
             record.rope()->set_attachments(thin.attachments);
             record.rope()->set_clamps(record.definition.clamps);
+            follow_round_bodies(member.substep, bodies, *member.thin);
             record.rope()->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
             member.touch = record.rope()->touch();
         }
