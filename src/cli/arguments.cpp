@@ -325,14 +325,15 @@ private:
             ->add_option(
                 "suite", c.into->suite,
                 "table1; stability: do structures stand without gaps and motion; simbenchmark: accuracy beside "
-                "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
-                "models of the database; tetrahedra: fillings of soft ones; grains: slopes of heaps "
+                "published figures; scaling: cost of 1,000 to 100,000 bodies; matter: cost of cloth, solids, water and "
+                "grains in motion; decomposition: convex parts of models of the database; tetrahedra: fillings of soft "
+                "ones; grains: slopes of heaps "
                 "and cost of grains; cloth: cost of a tablecloth; soft: cost of cushions; fluid: cost of "
                 "water with floating boxes; convergence: soft bodies and liquids beside theory at several resolutions; "
                 "catalogue: search in the database, filled with variants")
             ->capture_default_str()
-            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra",
-                                   "grains", "cloth", "soft", "fluid", "convergence", "catalogue"})
+            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "matter", "decomposition",
+                                   "tetrahedra", "grains", "cloth", "soft", "fluid", "convergence", "catalogue"})
                         .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);

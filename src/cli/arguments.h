@@ -132,8 +132,8 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    /// Or "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra", "grains", "cloth", "soft",
-    /// "catalogue", "race".
+    /// Or "stability", "simbenchmark", "scaling", "matter", "decomposition", "tetrahedra", "grains", "cloth",
+    /// "soft", "fluid", "convergence", "catalogue", "race".
     std::string suite = "table1";
     std::filesystem::path database;       ///< of decomposition, tetrahedra and catalogue
     std::vector<std::string> race_words;  ///< for the race's own program

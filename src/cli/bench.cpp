@@ -11,6 +11,7 @@
 #include "cli/bench_decomposition.h"
 #include "cli/bench_fluid.h"
 #include "cli/bench_grains.h"
+#include "cli/bench_matter.h"
 #include "cli/bench_race.h"
 #include "cli/bench_scaling.h"
 #include "cli/bench_simbenchmark.h"
@@ -61,6 +62,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "fluid") return run_fluid(arguments);
     if (arguments.suite == "soft") return run_soft(arguments);
     if (arguments.suite == "grains") return run_grains(arguments);
+    if (arguments.suite == "matter") return run_matter(arguments);
     if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
