@@ -71,5 +71,12 @@ TEST(RandomMatter, NeverRisesAboveTheEnergyItBeganWith) {
     EXPECT_LE(above, allowed_share * scenes);
 }
 
+// A heap of grains smaller than the liquid's cells in the corner of a tub: where their spread volumes shut the faces of
+// a cell, liquid was shut in with them, and its pressure shot them off at 4,200 m/s.
+TEST(RandomMatter, GrainsThatLieCloseAreNoWallsForLiquid) {
+    const MatterScene scene = random_matter(105);
+    EXPECT_LT(highest_energy(*scene.world).gain, allowed_gain_of_matter);
+}
+
 }  // namespace
 }  // namespace embody::physics

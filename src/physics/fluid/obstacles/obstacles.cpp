@@ -8,6 +8,10 @@ namespace embody::physics::fluid {
 
 namespace {
 
+// Of volume, of equal spheres: G. D. Scott, D. M. Kilgour, "The density of random close packing of spheres", J. Phys. D
+// 2 (1969). Test: RandomMatter.GrainsThatLieCloseAreNoWallsForLiquid.
+constexpr float closest_packing = 0.64f;
+
 Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
     const Vec3 half = angular_velocity * (dt / 2);
     const Quat change = Quat{half.x, half.y, half.z, 0} * rotation;
@@ -196,8 +200,11 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                 for (int axis = 0; axis < 3; ++axis) {
                     float& open = grid.open[axis][cell];
                     if (region.fraction(axis, here) > 0 && open < 1) films_.meet(grid, axis, c);
-                    float fraction = std::min(region.fraction(axis, here), open);
-                    if (open - fraction < min_open) fraction = open;
+                    // The spread volume of grains leaves the room between spheres that lie as close as they can.
+                    const float wide = 1 - grid.static_fraction[axis][cell];
+                    const float kept = moving.is_small ? std::max(min_open, (1 - closest_packing) * wide) : 0;
+                    float fraction = std::min(region.fraction(axis, here), std::max(0.0f, open - kept));
+                    if (!moving.is_small && open - fraction < min_open) fraction = open;
                     moving.fraction[axis][here] = fraction;
                     open -= fraction;
                     const float unfilled = fraction - region.filled(axis, here);
