@@ -17,8 +17,8 @@ namespace {
 
 using namespace physics;
 
-/// A world and what is in it.
-struct Scene {
+/// A world and what moves in it.
+struct Moving {
     std::unique_ptr<World> world;
     std::vector<DeformableHandle> deformables;
     FluidHandle fluid;
@@ -35,7 +35,7 @@ Result<void> add_static(World& world, const ShapeDefinition& form, Vec3 position
     return body ? Result<void>() : body.error();
 }
 
-Result<void> add_cloth(int edges, Scene& scene) {
+Result<void> add_cloth(int edges, Moving& scene) {
     constexpr double side = 1.4, box_side = 0.9, box_height = 0.7;
     const Vec3 half{box_side / 2, box_height / 2, box_side / 2};
     if (auto box = add_static(*scene.world, BoxShape{half}, {0, half.y, 0}); !box) return box;
@@ -50,7 +50,7 @@ Result<void> add_cloth(int edges, Scene& scene) {
     return {};
 }
 
-Result<void> add_solids(int tetrahedra, Scene& scene) {
+Result<void> add_solids(int tetrahedra, Moving& scene) {
     constexpr int bricks = 8;
     const int cells = std::max(1, static_cast<int>(std::lround(std::cbrt(tetrahedra / (6.0 * bricks)))));
     Random random(3);
@@ -68,7 +68,7 @@ Result<void> add_solids(int tetrahedra, Scene& scene) {
     return {};
 }
 
-Result<void> add_dam(int particles, Scene& scene) {
+Result<void> add_dam(int particles, Moving& scene) {
     constexpr double length = 2, width = 0.5, column = 0.6, height = 0.8, wall = 0.1, high = 0.6;
     const auto side = [&](Vec3 half, Vec3 place) { return add_static(*scene.world, BoxShape{half}, place); };
     for (const double x : {-wall, length + wall})
@@ -86,7 +86,7 @@ Result<void> add_dam(int particles, Scene& scene) {
 
 constexpr double grain_diameter = 0.01, friction_angle = 30;
 
-Result<void> add_grains(int grains, Scene& scene) {
+Result<void> add_grains(int grains, Moving& scene) {
     const auto ball = scene.world->create_shape(SphereShape{grain_diameter / 2});
     if (!ball) return ball.error();
     BodyDefinition grain{.shape = *ball};
@@ -108,12 +108,12 @@ Result<void> add_grains(int grains, Scene& scene) {
     return {};
 }
 
-Result<Scene> build(Matter matter, int size, int workers) {
+Result<Moving> build(Matter matter, int size, int workers) {
     WorldSettings settings{.sleeping = false, .workers = workers};
     if (matter == Matter::grains) settings.substeps = substeps_for_grains(grain_diameter, settings);
     auto world = World::create(settings);
     if (!world) return world.error();
-    Scene scene{.world = std::move(*world), .deformables = {}, .fluid = {}, .grains = {}};
+    Moving scene{.world = std::move(*world), .deformables = {}, .fluid = {}, .grains = {}};
     const Material ground = matter == Matter::grains ? grain_material(friction_angle, grain_diameter) : Material{};
     if (auto plane = add_static(*scene.world, PlaneShape{}, {}, ground); !plane) return plane.error();
     Result<void> added;
@@ -137,7 +137,7 @@ Result<Scene> build(Matter matter, int size, int workers) {
     return scene;
 }
 
-std::string judge(const Scene& scene) {
+std::string judge(const Moving& scene) {
     const Conserved sum = scene.world->conserved();
     const double energy = sum.kinetic_energy + sum.potential_energy;
     if (!std::isfinite(energy)) return "not finite";
