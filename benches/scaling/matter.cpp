@@ -153,63 +153,28 @@ std::string judge(const Moving& scene) {
     return {};
 }
 
+struct Told {
+    std::string_view name, what, element;
+    std::array<int, 3> sizes;
+};
+
+// In the order of Matter.
+constexpr std::array all_told{
+    Told{"cloth", "a sheet falls over a box and drapes", "edges", {10'000, 20'000, 40'000}},
+    Told{
+        "solids", "eight bricks of rubber fall on the ground and on each other", "tetrahedra", {5'000, 10'000, 20'000}},
+    Told{"dam", "a column of water collapses between walls", "particles", {40'000, 80'000, 150'000}},
+    Told{"grains", "a column of sand runs out over a plate", "grains", {2'500, 5'000, 10'000}},
+};
+
+const Told& told_of(Matter matter) { return all_told[static_cast<std::size_t>(matter)]; }
+
 }  // namespace
 
-std::string_view name_of(Matter matter) {
-    switch (matter) {
-        case Matter::cloth:
-            return "cloth";
-        case Matter::solids:
-            return "solids";
-        case Matter::dam:
-            return "dam";
-        case Matter::grains:
-            break;
-    }
-    return "grains";
-}
-
-std::string_view what_of(Matter matter) {
-    switch (matter) {
-        case Matter::cloth:
-            return "a sheet falls over a box and drapes";
-        case Matter::solids:
-            return "eight bricks of rubber fall on the ground and on each other";
-        case Matter::dam:
-            return "a column of water collapses between walls";
-        case Matter::grains:
-            break;
-    }
-    return "a column of sand runs out over a plate";
-}
-
-std::string_view element_of(Matter matter) {
-    switch (matter) {
-        case Matter::cloth:
-            return "edges";
-        case Matter::solids:
-            return "tetrahedra";
-        case Matter::dam:
-            return "particles";
-        case Matter::grains:
-            break;
-    }
-    return "grains";
-}
-
-std::array<int, 3> sizes_of(Matter matter) {
-    switch (matter) {
-        case Matter::cloth:
-            return {10'000, 20'000, 40'000};
-        case Matter::solids:
-            return {5'000, 10'000, 20'000};
-        case Matter::dam:
-            return {40'000, 80'000, 150'000};
-        case Matter::grains:
-            break;
-    }
-    return {2'500, 5'000, 10'000};
-}
+std::string_view name_of(Matter matter) { return told_of(matter).name; }
+std::string_view what_of(Matter matter) { return told_of(matter).what; }
+std::string_view element_of(Matter matter) { return told_of(matter).element; }
+std::array<int, 3> sizes_of(Matter matter) { return told_of(matter).sizes; }
 
 Result<MatterCost> measure(Matter matter, int size, int workers) {
     auto scene = build(matter, size, workers);

@@ -10,7 +10,7 @@ namespace {
 
 // Of volume, of equal spheres: G. D. Scott, D. M. Kilgour, "The density of random close packing of spheres", J. Phys. D
 // 2 (1969). Test: RandomMatter.GrainsThatLieCloseAreNoWallsForLiquid.
-constexpr float closest_packing = 0.64f;
+constexpr float closest_packing = 0.64f;  // a fraction
 
 Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
     const Vec3 half = angular_velocity * (dt / 2);

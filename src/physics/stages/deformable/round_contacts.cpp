@@ -85,7 +85,7 @@ private:
 
     // By the turn of the normal from a quarter of the segment before the point to one behind it.
     [[nodiscard]] double curvature_radius(Vec3 from, Vec3 edge, const SegmentContact& contact) {
-        constexpr double min_turn = 1e-6;  // rad: on what is flatter the nodes stand. Test: Atwood.OverAFixedDrum
+        constexpr double min_turn = 1e-6;  // rad: what turns less is flat, and the nodes stand on it
         const auto before = plane_at(from + (contact.along - 0.25) * edge, contact.plane);
         const auto after = plane_at(from + (contact.along + 0.25) * edge, contact.plane);
         if (!before || !after) return 0;
