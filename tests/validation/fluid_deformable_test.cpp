@@ -2,6 +2,7 @@
 // Liquids with what bends: soft solids and ropes; sheets: fluid_cloth_test.cpp (docs/physics/coupling.md, "Liquids and
 // what bends").
 #include "foundation/random.h"
+#include "math/kernel_width.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "validation/fluid_scenes.h"
 
@@ -195,6 +196,7 @@ TEST(FluidDeformables, AtRestInWaterAtRestTheySleep) {
 TEST(FluidDeformables, HaveTheSameBitsForAnyNumberOfWorkersAndLanes) {
     std::vector<std::unique_ptr<World>> worlds;
     for (const auto& [workers, lanes] : {std::pair{1, 4}, {2, 8}, {4, 16}}) {
+        if (!has_lanes(lanes)) continue;  // of this processor
         worlds.push_back(make_world({.workers = workers, .lanes = lanes}));
         World& world = *worlds.back();
         add_tank(world, {{0, 0, 0}, {0.4, 0.6, 0.4}});

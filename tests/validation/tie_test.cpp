@@ -336,7 +336,7 @@ TEST(Tie, SameBitsForAnyNumberOfWorkers) {
         banner.pose.position = {0, 1, 0.5};
         tie(banner, *world, held);
         ASSERT_TRUE(world->create_deformable(banner).ok());
-        run(*world, 0.3);
+        run(*world, 0.15);
         hashes.push_back(world->state_hash());
     }
     EXPECT_EQ(hashes[0], hashes[1]);
