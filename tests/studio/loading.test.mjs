@@ -89,10 +89,10 @@ describe("large scenes in the Studio", { timeout: 900000 }, () => {
     await page.getByLabel("Velocity y", { exact: true }).fill("1.5");
     await page.getByLabel("Velocity y", { exact: true }).press("Enter");
     const changed = async () => (await session.command("hello")).scene.entities.filter(({ linear_velocity }) => linear_velocity?.[1] === 1.5).length;
-    await until(changed, (count) => count === BOXES, `of ${BOXES} so many have the velocity`);
+    await until(changed, (count) => count === BOXES, `of ${BOXES} so many have the velocity`, 120000);
     assert.ok(await page.evaluate(() => window.embody.connected()));
     await page.getByTestId("canvas").focus();
     await page.keyboard.press("Control+z");
-    await until(changed, (count) => count === 0, "one undo takes back all");
+    await until(changed, (count) => count === 0, "one undo takes back all", 120000);
   });
 });

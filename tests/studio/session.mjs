@@ -61,10 +61,10 @@ export async function searchFor(page, words) {
   }, words);
 }
 
-/** Reads again and again until it fits, as long as Playwright waits for a page; the last that was read. */
-export async function until(read, fits, message) {
+/** Reads again and again until it fits, at most `limit` ms, by default as long as Playwright waits for a page; the last that was read. */
+export async function until(read, fits, message, limit = 30000) {
   let last;
-  for (const begun = Date.now(); Date.now() - begun < 30000; await new Promise((done) => setTimeout(done, 50))) {
+  for (const begun = Date.now(); Date.now() - begun < limit; await new Promise((done) => setTimeout(done, 50))) {
     last = await read();
     if (fits(last)) return last;
   }
