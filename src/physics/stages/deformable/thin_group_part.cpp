@@ -106,7 +106,8 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies) {
         }
         seen_[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
                     std::vector<double>(member.count, 0),
-                    record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness()};
+                    record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness(),
+                    record.cloth() ? std::span<const Mat3>() : record.rope()->directed_stiffness()};
     }
 }
 
@@ -166,7 +167,9 @@ void ThinGroupPart::begin_pairs(std::span<const TouchedBody> bodies) {
         guarded_.push_back({pair.a, pair.b, sheet != nullptr ? &sheet->layers() : nullptr, pair.held});
     }
     const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
-    pairs_.begin(seen_, met_, world_.deformables.thin_contacts, {h_, pull, carried_mass(bodies), settings});
+    const double rope_factor = world_.settings.solver.deformable.rope.contact_stiffness_factor;
+    pairs_.begin(seen_, met_, world_.deformables.thin_contacts,
+                 {h_, pull, carried_mass(bodies), settings, rope_factor});
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -331,6 +334,17 @@ bool ThinGroupPart::are_finite() const {
                                [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
+// Of all together by conjugate gradients; directly of a rope that touches itself alone: far places of it are then as
+// stiff against each other as what lies between them is soft. Returns as of ClothSolver::solve().
+int ThinGroupPart::solve_linear(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                                std::span<const BodyInertia> inertias) {
+    if (members_.size() > 1 || sheets_ == 1)
+        return world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_,
+                                                    world_.workers);
+    const bool is_solved = members_[0].record().rope()->solve_linear(springs_, inertias, moves_, body_moves_);
+    return is_solved ? 1 : ClothSolver::not_finite;
+}
+
 // Ropes about their last moves, as in Newton's method, and sheets where these were not foreseen.
 ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies, bool is_shortest) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
@@ -352,8 +366,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
         gather_springs();
         from_ = moves_;
         body_from_ = body_moves_;
-        const int iterations = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_,
-                                                                    body_moves_, world_.workers);
+        const int iterations = solve_linear(sheets, lines, inertias);
         if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
         if (!is_shortest && (iterations == ClothSolver::indefinite || is_struck(bodies))) return Outcome::too_fast;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;

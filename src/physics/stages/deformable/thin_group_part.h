@@ -46,6 +46,8 @@ private:
     [[nodiscard]] double carried_mass(std::span<const TouchedBody> bodies) const;
     enum class Outcome : std::uint8_t { solved, too_fast, not_finite };
     Outcome solve(std::span<const TouchedBody> bodies, bool is_shortest);
+    int solve_linear(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                     std::span<const BodyInertia> inertias);
     [[nodiscard]] bool are_finite() const;
     [[nodiscard]] bool is_too_fast(const ThinMeeting& meeting) const;
     void gather_springs();
