@@ -37,16 +37,18 @@ struct BodySupport {
 struct TouchedBody {
     std::uint32_t body = 0;  ///< slot
     const CollisionShape* shape = nullptr;
-    Material material;       ///< of its surface
-    Transform start;         ///< pose of the shape's frame when the step began
-    Vec3 start_center;       ///< of mass, when the step began, m
-    double step_time = 0;    ///< of the whole step, s
-    Vec3 path_velocity;      ///< mean over the step, m/s
-    Vec3 path_acceleration;  ///< mean over the step, m/s²: the path is a parabola
-    Vec3 path_spin;          ///< mean over the step, rad/s
-    Vec3 path_spin_up;       ///< mean over the step, rad/s²
-    Vec3 path_turn;          ///< the turn of the step as the argument of cayley(), over the step's time, 1/s
-    bool is_dynamic = true;  ///< else pushes have no effect on it
+    Material material;           ///< of its surface
+    Transform start;             ///< pose of the shape's frame when the step began
+    Vec3 start_center;           ///< of mass, when the step began, m
+    double step_time = 0;        ///< of the whole step, s
+    Vec3 path_velocity;          ///< mean over the step, m/s
+    Vec3 path_acceleration;      ///< mean over the step, m/s²: the path is a parabola
+    Vec3 path_spin;              ///< mean over the step, rad/s
+    Vec3 path_spin_up;           ///< mean over the step, rad/s²
+    Vec3 path_turn;              ///< the turn of the step as the argument of cayley(), over the step's time, 1/s
+    bool is_dynamic = true;      ///< else pushes have no effect on it
+    bool touches_solid = false;  ///< or may in this step
+    bool is_borne = false;       ///< others push it on the rigid side, or a joint holds it: `supports` has some of them
     double inverse_mass = 0;
     Mat3 inverse_inertia = Mat3::zero();   ///< world axes
     Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path includes already, N and N m

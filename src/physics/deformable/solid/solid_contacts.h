@@ -21,7 +21,8 @@ class SolidContacts {
 public:
     using Solids = std::span<SolidDeformable* const>;
 
-    /// Lets the forces that are remembered act on solids and bodies; before the solids' solve().
+    /// Lets the forces that are remembered, and those of what bears the bodies, act on solids and bodies; before the
+    /// solids' solve().
     static void begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                       double time);
     /// A substep of h seconds that ends `time` (s) after the step began.
@@ -51,6 +52,8 @@ private:
         std::array<Term, 6> terms{};
         std::size_t term_count = 0;
         TouchedBody* body = nullptr;     ///< none: between solids
+        BodySupport* support = nullptr;  ///< that this is: no solid takes part
+        Mat3 held = Mat3::identity();    ///< projection onto the directions in which it holds
         Vec3 normal, arm;                ///< arm: from the body's centre
         double gap = 0, target = 0;      ///< of the free motion, and the minimum allowed, m
         Vec3 slid;                       ///< relative motion in the substep, free, m
@@ -67,6 +70,9 @@ private:
         std::vector<std::uint32_t> solids, bodies;
     };
     void gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time);
+    void gather_supports(std::span<TouchedBody> bodies, double h, double time);
+    static void place_support(Active& active, double h, double time);
+    void end_supports() const;
     void place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const;
     void add_terms(Active& active, const CarriedPoint& point, double sign);
     void find_compliance(Active& active, double h) const;
@@ -78,6 +84,7 @@ private:
     void find_forces(const Group& group, double h, TaskPool& workers);
     void lean_on(const Group& group, double factor, double h);
     double sweep(const Group& group, double h, bool forwards);
+    void settle_bodies(const Group& group, double h);
     void solve_together(const Group& group, double h, TaskPool& workers);
     void respond(const Group& group, double h, TaskPool& workers);
     void probe(const Group& group, TaskPool& workers);
@@ -91,6 +98,7 @@ private:
 
     SolidContactSettings settings_;  // of the substep
     std::vector<Active> active_;
+    std::vector<SolidContact> supports_;  // those of the bodies in active_, of which they are the last
     std::vector<Group> groups_;
     std::vector<TouchedNodes> touched_;               // by solid
     std::vector<Vec3> probe_forces_, probe_torques_;  // by body, N and N m

@@ -14,7 +14,7 @@ Vec3 SolidContacts::missing(const Active& active) const {
         case State::open:
             return {};
         case State::holds:
-            return -relative;
+            return -(active.held * relative);
         case State::sticks:
             return along - (relative - dot(relative, n) * n);
         case State::slides:

@@ -41,21 +41,26 @@ public:
             for (const std::uint32_t body : one.attachment_bodies) mark(body, by);
         }
         for (const SolidContact& contact : of_solids) {
-            if (contact.has_body()) borne_[contact.body] = Borne::no;
+            if (!contact.has_body()) continue;
+            mark(contact.body, Borne::by_all);
+            bodies_[contact.body].touches_solid = true;
         }
     }
 
-    // Null where the body of that slot is none of them.
-    [[nodiscard]] TouchedBody* find_by_contacts(std::uint32_t slot) const { return find(slot, Borne::by_all); }
-    [[nodiscard]] TouchedBody* find_by_joints(std::uint32_t slot) const { return find(slot, Borne::by_joints); }
+    // Null where the body of that slot is no dynamic one near deformables.
+    [[nodiscard]] TouchedBody* find(std::uint32_t slot) const {
+        const auto found = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
+        if (found == bodies_.end() || found->body != slot || !(found->inverse_mass > 0)) return nullptr;
+        return &*found;
+    }
+    [[nodiscard]] bool is_borne_by_contacts(const TouchedBody& body) const { return borne(body) == Borne::by_all; }
+    [[nodiscard]] bool is_borne_by_joints(const TouchedBody& body) const { return borne(body) != Borne::no; }
 
 private:
     enum class Borne : std::uint8_t { no, by_joints, by_all };
 
-    [[nodiscard]] TouchedBody* find(std::uint32_t slot, Borne least) const {
-        const auto found = std::ranges::lower_bound(bodies_, slot, {}, &TouchedBody::body);
-        if (found == bodies_.end() || found->body != slot || !(found->inverse_mass > 0)) return nullptr;
-        return borne_[static_cast<std::size_t>(found - bodies_.begin())] >= least ? &*found : nullptr;
+    [[nodiscard]] Borne borne(const TouchedBody& body) const {
+        return borne_[static_cast<std::size_t>(&body - bodies_.data())];
     }
 
     std::span<TouchedBody> bodies_;
@@ -123,17 +128,24 @@ void find_supports(const DeformableAccess& world, std::span<const SolidContact> 
     if (bodies.empty()) return;
     const BorneBodies borne(of_solids, thin, bodies);
     for (const Contact& contact : world.contacts.list) {
-        if (!is_movable(world, contact.b)) {
-            if (TouchedBody* body = borne.find_by_contacts(contact.a)) add_contact(world, contact, true, *body);
-        } else if (!is_movable(world, contact.a)) {
-            if (TouchedBody* body = borne.find_by_contacts(contact.b)) add_contact(world, contact, false, *body);
+        double total = 0;
+        for (int k = 0; k < contact.count; ++k) total += contact.points[static_cast<std::size_t>(k)].total;
+        for (const bool is_a : {true, false}) {
+            TouchedBody* const body = borne.find(is_a ? contact.a : contact.b);
+            if (body == nullptr) continue;
+            body->is_borne = body->is_borne || total > 0;
+            if (!is_movable(world, is_a ? contact.b : contact.a) && borne.is_borne_by_contacts(*body))
+                add_contact(world, contact, is_a, *body);
         }
     }
     for (const Joint& joint : world.joints.active) {
-        if (joint.a_is_world || !is_movable(world, joint.a)) {
-            if (TouchedBody* body = borne.find_by_joints(joint.b)) add_joint(world, joint, false, *body);
-        } else if (!is_movable(world, joint.b)) {
-            if (TouchedBody* body = borne.find_by_joints(joint.a)) add_joint(world, joint, true, *body);
+        for (const bool is_a : {true, false}) {
+            if (is_a && joint.a_is_world) continue;
+            TouchedBody* const body = borne.find(is_a ? joint.a : joint.b);
+            if (body == nullptr) continue;
+            body->is_borne = true;
+            const bool stands = is_a ? !is_movable(world, joint.b) : joint.a_is_world || !is_movable(world, joint.a);
+            if (stands && borne.is_borne_by_joints(*body)) add_joint(world, joint, is_a, *body);
         }
     }
     for (TouchedBody& body : bodies) body.set_borne_forces();

@@ -13,8 +13,7 @@ namespace embody::physics::stages {
 
 /// Sets what bears each body, as the rigid stages of this step found it: contacts with, and joints to, what does not
 /// give way: the world, static and kinematic bodies, sleepers. `bodies`: ascending by slot. Only of those that sheets
-/// may push, or have pushed in the last step, and that no soft solid touches: ropes alone and solids take bodies as
-/// free (docs/physics/coupling.md).
+/// and solids may push, or have pushed in the last step: ropes alone take bodies as free (docs/physics/coupling.md).
 void find_supports(const DeformableAccess& world, std::span<const SolidContact> of_solids,
                    std::span<const ThinDeformable> thin, std::span<TouchedBody> bodies);
 

@@ -59,7 +59,14 @@ TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
         body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
     }
     body.path_velocity = (state.center - body.start_center) / dt;
-    body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
+    if (sine > 0) {
+        // Whole turns do not show in the rotation.
+        constexpr double whole_turn = 6.283185307179586;
+        const Vec3 axis = half_sine / sine;
+        const double angle = 2 * std::asin(std::min(sine, 1.0));
+        const double by_spin = dot(record.start_angular_velocity + state.angular_velocity, axis) * (dt / 2);
+        body.path_spin = ((angle + whole_turn * std::round((by_spin - angle) / whole_turn)) / dt) * axis;
+    }
     body.path_turn = (2 / (std::max(half_cosine, min_cosine) * dt)) * half_sine;
     body.inverse_mass = state.inverse_mass;
     body.inverse_inertia = state.inverse_inertia;
@@ -220,8 +227,30 @@ bool correct_solids(const DeformableAccess& world, const MovingDeformables& movi
     return is_any;
 }
 
+// A body that a solid holds at a point, r from its centre, turns under the pushes F on it at a rate of up to √(F r /
+// I). A light one between its solid and the floor does so within a fraction of a substep: the substeps of a step in
+// which that is to be expected are shorter.
+int substeps_for(const DeformableAccess& world, const MovingDeformables& moving) {
+    constexpr double max_turn = 2;    // of that rate times a substep: the limit of stability
+    constexpr int max_substeps = 16;  // Test of both: HeldBall.GainsNothingBetweenASolidAndTheFloor
+    const int wanted = world.settings.deformable_substeps;
+    std::vector<double> force(moving.bodies.size(), 0), arm(moving.bodies.size(), 0);
+    for (const SolidContact& contact : moving.contacts) {
+        if (!contact.has_body()) continue;
+        force[contact.body] += length(contact.force);
+        if (contact.holds) arm[contact.body] = std::max(arm[contact.body], length(contact.anchor));
+    }
+    double fastest = 0;
+    for (std::size_t b = 0; b < moving.bodies.size(); ++b) {
+        const Mat3& inverse = moving.bodies[b].inverse_inertia;
+        fastest = std::max(fastest, force[b] * arm[b] * trace(inverse) / 3);
+    }
+    const double needed = std::sqrt(fastest) * world.settings.time_step / max_turn;
+    return std::max(wanted, static_cast<int>(std::ceil(std::clamp<double>(needed, 1, max_substeps))));
+}
+
 void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
-    const int substeps = world.settings.deformable_substeps;
+    const int substeps = substeps_for(world, moving);
     const double h = world.settings.time_step / substeps;
     const DeformableSettings& settings = world.settings.solver.deformable;
     for (int k = 1; k <= substeps; ++k) {
@@ -240,20 +269,29 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
         } while (corrections++ < settings.solid.max_corrections && correct_solids(world, moving));
         parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         bounce_solids(world, moving.solid_records, moving.contacts, moving.bodies, h, k * h);
-        advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
+        advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k, substeps);
     }
 }
 
-// The fraction of a body's pushes that the next rigid step takes as constant forces. What bears a light body under a
-// heavy sheet answers the rest of them in the solve of the deformables alone: held through a step while the body tilts,
-// a push of hundreds of times its weight would throw it away.
-double fraction_for_rigid_step(const DeformableAccess& world, const TouchedBody& body, double reach) {
+/// Of a body's pushes, what the next rigid step takes as constant.
+struct HeldFractions {
+    double force = 1, torque = 1;
+};
+
+// Held through a step while the body moves and tilts, a push of hundreds of times its weight throws it away. What bears
+// a light body under a heavy sheet answers the rest in the solve of the deformables alone; what nothing bears, and the
+// turn of a ball, which is borne by friction alone, have no use for it.
+HeldFractions fractions_for_rigid_step(const DeformableAccess& world, const TouchedBody& body) {
+    const BodyRecord& record = world.rigid.record(body.body);
     const ThinContactSettings& settings = world.settings.solver.deformable.thin_contact;
-    if (body.supports.empty()) return 1;
     const double dt = world.settings.time_step, g = std::max(length(world.settings.gravity), settings.min_gravity);
-    const double push = length(body.impulse) + (reach > 0 ? length(body.angular_impulse) / reach : 0);
     const double most = settings.max_push_in_weights * g * dt / body.inverse_mass;
-    return push > most ? most / push : 1;
+    const auto fraction = [&](double push) { return push > most ? most / push : 1.0; };
+    const double turn = record.reach > 0 ? length(body.angular_impulse) / record.reach : 0;
+    if (body.supports.empty() && !body.touches_solid) return {1, 1};
+    if (body.supports.empty() && body.is_borne) return {1, record.is_ball ? fraction(turn) : 1};
+    const double both = fraction(length(body.impulse) + turn);
+    return {both, both};
 }
 
 // Moves the bodies to where the pushes have brought them, and stores the pushes for the rigid bodies' next step.
@@ -277,13 +315,13 @@ void put_back_bodies(const DeformableAccess& world, const MovingDeformables& mov
                 world.activity.to_wake.push_back(body.body);
             continue;
         }
-        const double kept = fraction_for_rigid_step(world, body, record.reach);
+        const HeldFractions held = fractions_for_rigid_step(world, body);
         record.whole_push = force;
         record.whole_push_torque = torque;
-        record.deformable_force = kept * force;
-        record.deformable_torque = kept * torque;
-        record.late_force = (kept / dt) * body.late_impulse;
-        record.late_torque = (kept / dt) * body.late_angular_impulse;
+        record.deformable_force = held.force * force;
+        record.deformable_torque = held.torque * torque;
+        record.late_force = (held.force / dt) * body.late_impulse;
+        record.late_torque = (held.torque / dt) * body.late_angular_impulse;
         if (force != Vec3{} || torque != Vec3{}) world.deformables.pushed_bodies.push_back(body.body);
         if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
             continue;

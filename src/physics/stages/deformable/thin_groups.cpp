@@ -322,9 +322,8 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
 }
 
 void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
-                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k) {
+                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k, int substeps) {
     EMBODY_ZONE("advance sheets and ropes");
-    const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
     ThinOnSolids::Surfaces surfaces;
     for (const ThinGroup& group : groups) {

@@ -27,10 +27,10 @@ struct ThinGroup {
 bool wake_touched_thin(const DeformableAccess& world);
 /// Each of `thin` in one group; forgets contacts of pairs that have separated. Ascending by first member.
 std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin);
-/// Substep k (1 …) of the deformables' substeps for all groups: groups with ropes or tied to solids in each, sheets
+/// Substep k of 1 … `substeps` of the deformables for all groups: groups with ropes or tied to solids in each, sheets
 /// alone once for the whole step, in the last. Pushes the bodies, notes ropes that break.
 void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
-                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k);
+                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k, int substeps);
 /// Forgets the contacts of the deformable of that slot with others.
 void forget_thin_contacts(DeformableState& deformables, std::uint32_t slot);
 
