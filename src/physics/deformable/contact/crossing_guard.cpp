@@ -56,6 +56,7 @@ std::vector<ThinCandidate> CrossingGuard::candidates_of(const Pair& pair, std::s
     if (pair.layers != nullptr) return pair.layers->meeting(*a.nodes, part(moves, pair.a), reach / 2, *workers_);
     std::vector<ThinCandidate> candidates;
     find_swept_candidates(a, part(moves, pair.a), b, part(moves, pair.b), reach, *workers_, candidates);
+    if (pair.a == pair.b) leave_out_neighbours(a, 0, candidates);
     return candidates;
 }
 

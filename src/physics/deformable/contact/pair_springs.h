@@ -37,6 +37,7 @@ struct ThinMember {
     std::uint32_t first = 0;            ///< number of its first node among those of all
     std::vector<double> load;           ///< kg a node: of bodies that lie on it
     std::span<const double> stiffness;  ///< N/m a node, of it alone
+    std::span<const Mat3> directed;     ///< of a rope: the same by direction
 };
 /// Nodes of two members that are held at the other, by ties or by one body; of a sheet with itself those that ties
 /// hold, in `of_a`. None: empty.
@@ -50,7 +51,7 @@ struct HeldNodes {
 /// Takes out the candidates of two members that cannot be parted.
 void leave_out_held(const ThinSurface& a, const ThinSurface& b, const HeldNodes& held,
                     std::vector<ThinCandidate>& candidates);
-/// Two members, by index, the lower slot first, with their candidates; or a sheet with itself.
+/// Two members, by index, the lower slot first, with their candidates; or one with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
     PairFriction friction;

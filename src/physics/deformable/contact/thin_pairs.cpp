@@ -2,6 +2,7 @@
 #include "physics/deformable/contact/thin_pairs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "physics/deformable/contact/box_grid.h"
 #include "physics/deformable/contact/nearest_points.h"
@@ -117,6 +118,15 @@ void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double tim
     find_swept_candidates(a, moves_of(a), b, moves_of(b), reach, workers, candidates);
 }
 
+void leave_out_neighbours(const ThinSurface& rope, double distance, std::vector<ThinCandidate>& candidates) {
+    const double nearest = std::max(1.0, distance / rope.edge_length);  // segments
+    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
+        const auto [first, second] = std::pair<double, double>(candidate.first, candidate.second);
+        if (candidate.kind == ThinFeature::edge_on_edge) return second - first - 1 < nearest;
+        return candidate.is_swapped || (first <= second ? second - first : first - second - 1) < nearest;
+    });
+}
+
 ThinPoints nearest_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead) {
     const ThinSurface &first = candidate.is_swapped ? b : a, &second = candidate.is_swapped ? a : b;
     const auto x = [&](std::uint32_t node) { return first.nodes->ahead(node, ahead); };
@@ -191,6 +201,13 @@ bool is_nearest_around(const ThinSurface& sheet, std::span<const std::uint32_t> 
     });
 }
 
+// The same of a node of a rope.
+bool is_nearest_along(const ThinSurface& rope, std::uint32_t node, double ahead, Vec3 away) {
+    const auto x = [&](std::uint32_t i) { return rope.nodes->ahead(i, ahead); };
+    const bool goes_back = node > 0 && dot(away, x(node - 1) - x(node)) > 0;
+    return !goes_back && !(node + 1 < rope.nodes->size() && dot(away, x(node + 1) - x(node)) > 0);
+}
+
 }  // namespace
 
 bool are_nearest(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, double ahead,
@@ -199,6 +216,13 @@ bool are_nearest(const ThinSurface& a, const ThinSurface& b, const ThinCandidate
     const std::span<const double> weights(points.weight.data(), nodes.size());
     const auto first = static_cast<std::size_t>(points.count_first);
     const ThinSurface &one = candidate.is_swapped ? b : a, &two = candidate.is_swapped ? a : b;
+    if (candidate.kind == ThinFeature::node_on_edge && &one == &two) {
+        if (!is_nearest_along(one, nodes[0], ahead, -points.away)) return false;
+        for (std::size_t k = first; k < nodes.size(); ++k) {
+            if (weights[k] == -1 && !is_nearest_along(two, nodes[k], ahead, points.away)) return false;
+        }
+        return true;
+    }
     if (candidate.kind == ThinFeature::edge_on_edge) {
         // What a rope presses on a sheet with its segments is borne by all edges below: by its nodes alone it sank in.
         if (one.stars == nullptr || two.stars == nullptr) return true;

@@ -43,6 +43,10 @@ void find_swept_candidates(const ThinSurface& a, std::span<const Vec3> moves_a, 
                            std::span<const Vec3> moves_b, double reach, TaskPool& workers,
                            std::vector<ThinCandidate>& candidates);
 
+/// Of candidates of a rope with itself, leaves each pair once, and none with less than `distance` (m) along the rope
+/// between the two, or with a node in common.
+void leave_out_neighbours(const ThinSurface& rope, double distance, std::vector<ThinCandidate>& candidates);
+
 /// The nearest points of two features: Σ weight x is the vector from the second to the first.
 struct ThinPoints {
     std::array<std::uint32_t, 4> node{};  ///< the first `count_first` of the first feature's surface

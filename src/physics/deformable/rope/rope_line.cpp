@@ -377,6 +377,14 @@ LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> mov
     return {&system_.band, system_.rhs, small_load_, &fixed_};
 }
 
+// Twists and folds about the rope are among its forces already.
+bool RopeLine::solve_linear(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+                            std::vector<Vec3>& moves, std::vector<BodyMove>& body_moves) {
+    std::vector<double> moments;
+    system_.twists.clear();
+    return system_.solve(springs, inertias, fixed_, moves, body_moves, moments);
+}
+
 void RopeLine::freeze() {
     is_frozen_ = true;
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};

@@ -35,6 +35,10 @@ public:
                std::span<const TouchedBody> bodies);
     /// The equations about these moves, without springs; valid until the next call. Their solution is moves again.
     LineSystem linearize(const Substep& substep, std::span<const Vec3> moves);
+    /// After linearize(), for a rope that touches itself and no other: solves its equations with these springs
+    /// directly, wherever along the rope their nodes lie. False where that fails.
+    bool solve_linear(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+                      std::vector<Vec3>& moves, std::vector<BodyMove>& body_moves);
     /// The function that the solve minimises, for the rope alone, without springs and clamps, J.
     [[nodiscard]] double energy(const Substep& substep, std::span<const Vec3> moves) const;
     /// Sets the tensions of its segments for a solve about the moves `from` with the solution `to`: for the next
@@ -55,6 +59,8 @@ public:
     [[nodiscard]] double segment_length() const { return segments_[0].length; }
     /// Stiffness of each node alone, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
+    /// The same by direction.
+    [[nodiscard]] std::span<const Mat3> directed_stiffness() const { return springs_.directed_stiffness; }
     /// Stops it for good where it is.
     void freeze();
 

@@ -29,16 +29,29 @@ void RopeSystem::add(std::vector<FoldRow> folds, std::span<const Vec3> moves, st
     }
 }
 
-// Springs between nodes go into the band; the bodies that others touch become unknowns.
+// Springs between nodes go into the band, and beside it where these lie far from each other; the bodies that others
+// touch become unknowns.
 void RopeSystem::add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias) {
+    constexpr std::size_t band_reach = 2;  // of BandCholesky, in nodes
     body_row_.assign(inertias.size(), none);
     moving_.clear();
+    far_.clear();
+    first_partner_.resize(rhs.size());
+    std::iota(first_partner_.begin(), first_partner_.end(), std::size_t{0});
     for (const TouchSpring& spring : springs) {
         if (!spring.acts) continue;
         for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
             rhs[spring.node[a]] += spring.weight[a] * spring.load;
-            for (std::size_t b = 0; b <= a; ++b)
-                band.add(spring.node[a], spring.node[b], (spring.weight[a] * spring.weight[b]) * spring.matrix);
+            for (std::size_t b = 0; b <= a; ++b) {
+                const auto [first, second] = std::minmax({std::size_t{spring.node[a]}, std::size_t{spring.node[b]}});
+                const Mat3 stiffness = (spring.weight[a] * spring.weight[b]) * spring.matrix;
+                if (second - first <= band_reach) {
+                    band.add(second, first, stiffness);
+                    continue;
+                }
+                far_.push_back({first, second, stiffness});
+                first_partner_[second] = std::min(first_partner_[second], first);
+            }
         }
         if (spring.body == no_body || !inertias[spring.body].moves || body_row_[spring.body] != none) continue;
         body_row_[spring.body] = 0;
@@ -79,7 +92,7 @@ void RopeSystem::order_unknowns(std::span<const TouchSpring> springs, const std:
     std::size_t next = 0;  // of moving_
     for (std::size_t node = 0; node < nodes; ++node) {
         node_row_[node] = first_column_.size();
-        add_rows(3, node_row_[node < 2 ? 0 : node - 2]);
+        add_rows(3, node_row_[std::min(node < 2 ? 0 : node - 2, first_partner_[node])]);
         if (node > 0 && angle_row_[node - 1] != none) {
             angle_row_[node - 1] = first_column_.size();
             add_rows(1, node_row_[node < 2 ? 0 : node - 2]);
@@ -103,6 +116,14 @@ void RopeSystem::fill_matrix(std::span<const TouchSpring> springs, std::span<con
             values_[node_row_[node] + r] = rhs[node][static_cast<int>(r)];
             for (std::size_t k = BandCholesky::first_column(i); k <= i; ++k)
                 matrix_.at(node_row_[node] + r, node_row_[k / 3] + k % 3) = band.element(i, k);
+        }
+    }
+    for (const FarCoupling& coupling : far_) {
+        if (fixed[coupling.first] || fixed[coupling.second]) continue;
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t c = 0; c < 3; ++c)
+                matrix_.at(node_row_[coupling.second] + r, node_row_[coupling.first] + c) +=
+                    coupling.stiffness(static_cast<int>(r), static_cast<int>(c));
         }
     }
     // Bodies.

@@ -52,7 +52,8 @@ struct FoldRow {
 
 /// The linear system of one iteration of Newton's method of a rope: its nodes, six unknowns for each touched body, and
 /// twists, one each. A body touches few of the nodes: its unknowns stand behind the last of these, so that the rows of
-/// the factor are no longer than from the first to the last node that a body touches.
+/// the factor are no longer than from the first to the last node that a body touches. Where the rope touches itself the
+/// row of the later node reaches back to the earlier one.
 class RopeSystem {
 public:
     /// All zero.
@@ -88,6 +89,13 @@ private:
     std::vector<FoldRow> folds_;                       // residual: at no moves
     std::vector<std::size_t> first_column_;            // by row
     std::vector<std::size_t> first_node_, last_node_;  // by body: that it touches
+    // Two nodes that the band does not couple, first < second: where a rope touches itself.
+    struct FarCoupling {
+        std::size_t first = 0, second = 0;
+        Mat3 stiffness;  // N/m
+    };
+    std::vector<FarCoupling> far_;
+    std::vector<std::size_t> first_partner_;  // by node: the first that its row couples it with
     EnvelopeCholesky matrix_;
     std::vector<double> values_;  // by row: the load, then the solution
 };

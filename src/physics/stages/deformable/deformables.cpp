@@ -481,7 +481,7 @@ void advance_deformables(const DeformableAccess& world) {
     moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     find_supports(world, moving.contacts, moving.thin, moving.bodies);
-    moving.groups = find_thin_groups(world, moving.thin);
+    moving.groups = find_thin_groups(world, moving.thin, moving.bodies);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
     if (!moving.records.empty())

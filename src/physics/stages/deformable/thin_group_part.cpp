@@ -104,9 +104,12 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies) {
             record.rope()->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
             member.touch = record.rope()->touch();
         }
-        seen_[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
+        seen_[m] = {surface_of(record, member.segments),
+                    record.slot,
+                    static_cast<std::uint32_t>(member.first),
                     std::vector<double>(member.count, 0),
-                    record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness()};
+                    record.cloth() ? record.cloth()->node_stiffness() : record.rope()->node_stiffness(),
+                    record.cloth() ? std::span<const Mat3>() : record.rope()->directed_stiffness()};
     }
 }
 
@@ -331,6 +334,17 @@ bool ThinGroupPart::are_finite() const {
                                [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
 }
 
+// Of all together by conjugate gradients; directly of a rope that touches itself alone: far places of it are then as
+// stiff against each other as what lies between them is soft. Returns as of ClothSolver::solve().
+int ThinGroupPart::solve_linear(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                                std::span<const BodyInertia> inertias) {
+    if (!is_rope_alone())
+        return world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_,
+                                                    world_.workers);
+    const bool is_solved = members_[0].record().rope()->solve_linear(springs_, inertias, moves_, body_moves_);
+    return is_solved ? 1 : ClothSolver::not_finite;
+}
+
 // Ropes about their last moves, as in Newton's method, and sheets where these were not foreseen.
 ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies, bool is_shortest) {
     const DeformableSettings& settings = world_.settings.solver.deformable;
@@ -352,8 +366,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
         gather_springs();
         from_ = moves_;
         body_from_ = body_moves_;
-        const int iterations = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_,
-                                                                    body_moves_, world_.workers);
+        const int iterations = solve_linear(sheets, lines, inertias);
         if (iterations == ClothSolver::not_finite || !are_finite()) return Outcome::not_finite;
         if (!is_shortest && (iterations == ClothSolver::indefinite || is_struck(bodies))) return Outcome::too_fast;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
@@ -378,6 +391,7 @@ ThinGroupPart::Outcome ThinGroupPart::solve(std::span<const TouchedBody> bodies,
             }
         }
         if (has_changed && !is_last_solve) continue;
+        if (is_rope_alone()) go_as_far_as_energy_lasts(inertias);
         settle_bodies(inertias);
         const std::vector<ThinMeeting> meetings = CrossingGuard(seen_, guarded_, world_.workers).find(moves_);
         if (meetings.empty()) return Outcome::solved;
@@ -477,6 +491,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
             rope->finish(member.substep, moves, body_moves_, bodies, fractions);
     }
     supports_.finish(body_moves_, h_, bodies, has_ropes() ? std::span(fractions) : std::span<const double>());
+    if (is_rope_alone()) shorten_moves();
     CrossingGuard(seen_, guarded_, world_.workers).hold(compliance, moves_);
     for (Member& member : members_) {
         const std::span<const Vec3> moves = part(moves_, member);

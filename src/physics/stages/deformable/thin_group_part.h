@@ -37,6 +37,7 @@ private:
     }
     [[nodiscard]] std::span<Member> ropes() { return std::span(members_).subspan(sheets_); }
     [[nodiscard]] bool has_ropes() const { return members_.size() > sheets_; }
+    [[nodiscard]] bool is_rope_alone() const { return members_.size() == 1 && has_ropes(); }
     void begin(std::span<const TouchedBody> bodies);
     void begin_members(std::span<const TouchedBody> bodies);
     void load_nodes(std::span<const TouchedBody> bodies);
@@ -46,12 +47,15 @@ private:
     [[nodiscard]] double carried_mass(std::span<const TouchedBody> bodies) const;
     enum class Outcome : std::uint8_t { solved, too_fast, not_finite };
     Outcome solve(std::span<const TouchedBody> bodies, bool is_shortest);
+    int solve_linear(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                     std::span<const BodyInertia> inertias);
     [[nodiscard]] bool are_finite() const;
     [[nodiscard]] bool is_too_fast(const ThinMeeting& meeting) const;
     void gather_springs();
     [[nodiscard]] double energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias,
                                 SpringEnergy spring_energy);
     double go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias);
+    void go_as_far_as_energy_lasts(std::span<const BodyInertia> inertias);
     bool choose_again(bool is_last);
     enum class Stretch : std::uint8_t { foreseen, unforeseen, too_far };
     Stretch linearize_again(bool is_last, bool may_cut, std::span<const TouchedBody> bodies);
@@ -62,6 +66,7 @@ private:
     void add_contacts(std::span<const ThinMeeting> meetings);
     [[nodiscard]] std::vector<double> compliances() const;
     void keep_momenta();
+    void shorten_moves();
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
     void take_back();
@@ -80,6 +85,7 @@ private:
     SupportSprings supports_;
     std::vector<TouchSpring> springs_;  // of all
     std::vector<Vec3> moves_, from_;    // by node of all
+    std::vector<Vec3> rigid_moves_;     // of a rope alone: the least that it may do
     std::vector<BodyMove> body_moves_, body_from_;
 };
 

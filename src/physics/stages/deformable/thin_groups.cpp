@@ -72,6 +72,34 @@ bool may_touch_others(const Bounds& bounds) {
     return size.x < max_finite_size && size.y < max_finite_size && size.z < max_finite_size;
 }
 
+// Whether a rope may touch a body that moves: what a solve that does not converge leaves of the rope's contacts with
+// itself would throw it away.
+bool may_touch_moving_body(const ThinDeformable& rope, std::span<const TouchedBody> bodies) {
+    const auto moves = [&](const NodeContact& contact) { return bodies[contact.body].is_dynamic; };
+    return std::ranges::any_of(rope.contacts, moves) ||
+           std::ranges::any_of(rope.segment_contacts,
+                               [&](const SegmentContact& contact) { return moves(contact.plane); });
+}
+
+// A rope that may touch itself, as a member of a group that has no other.
+void add_own_pair(const DeformableAccess& world, const DeformableRecord& rope, ThinGroup& group) {
+    if (!may_touch_others(rope.bounds())) return;
+    std::vector<std::array<std::uint32_t, 2>> segments;
+    const ThinSurface surface = surface_of(rope, segments);
+    const Material& material = rope.definition.material;
+    ThinPair own{.friction = friction_between(material, material, world.rigid.surface_pairs)};
+    find_thin_candidates(surface, surface, world.settings.time_step, pull_on(world, rope), world.workers,
+                         own.candidates);
+    // Half a turn about its own thickness is as near as a bend brings two places together.
+    constexpr double pi = 3.14159265358979323846;
+    leave_out_neighbours(surface, std::max(2 * surface.edge_length, pi * surface.radius), own.candidates);
+    own.held.are_of_one = true;
+    own.held.of_a.resize(rope.nodes().size(), false);
+    for (const Attachment& attachment : rope.definition.attachments) own.held.of_a[attachment.node] = true;
+    leave_out_held(surface, surface, own.held, own.candidates);
+    if (!own.candidates.empty()) group.pairs.push_back(std::move(own));
+}
+
 bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
 
 // The group that member i belongs to: that of its first member.
@@ -115,7 +143,7 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         ties[i].add(thin[group.members[i]], bodies, h);
     }
     ThinDeformable& first_member = thin[group.members[0]];
-    if (group.members.size() == 1 && first_member.record->rope()) {
+    if (group.members.size() == 1 && first_member.record->rope() && group.pairs.empty()) {
         first_member.record->begin_substep(h, world.settings.gravity, true);
         advance_rope(first_member, substep_of(world, *first_member.record, h, time), bodies);
         note_breaks(world, *first_member.record);
@@ -252,7 +280,8 @@ bool wake_touched_thin(const DeformableAccess& world) {
     return has_woken;
 }
 
-std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin) {
+std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin,
+                                        std::span<const TouchedBody> bodies) {
     EMBODY_ZONE("find sheets and ropes that touch");
     std::vector<std::uint32_t> group(thin.size());
     std::iota(group.begin(), group.end(), 0u);
@@ -276,7 +305,7 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
             group[std::max(i, k)] = std::min(i, k);
         }
     }
-    // A sheet with itself, whose candidates each part of a step finds. A rope does not touch itself.
+    // A sheet with itself, whose candidates each part of a step finds.
     for (std::uint32_t i = 0; i < thin.size(); ++i) {
         const DeformableRecord& record = *thin[i].record;
         if (!record.cloth()) continue;
@@ -314,6 +343,11 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
         pair.a = place[pair.a];
         pair.b = place[pair.b];
         own.pairs.push_back(std::move(pair));
+    }
+    for (ThinGroup& own : groups) {
+        const ThinDeformable& first = thin[own.members[0]];
+        if (own.members.size() == 1 && first.record->rope() && !may_touch_moving_body(first, bodies))
+            add_own_pair(world, *first.record, own);
     }
     for (const ThinTie& tie : ties)
         groups[number[tie.member]].ties.push_back({place[tie.member], place[tie.other], tie.index});

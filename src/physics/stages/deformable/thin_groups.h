@@ -26,7 +26,8 @@ struct ThinGroup {
 /// any was woken.
 bool wake_touched_thin(const DeformableAccess& world);
 /// Each of `thin` in one group; forgets contacts of pairs that have separated. Ascending by first member.
-std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin);
+std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin,
+                                        std::span<const TouchedBody> bodies);
 /// Substep k of 1 … `substeps` of the deformables for all groups: groups with ropes or tied to solids in each, sheets
 /// alone once for the whole step, in the last. Pushes the bodies, notes ropes that break.
 void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
