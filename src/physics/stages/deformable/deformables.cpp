@@ -59,14 +59,7 @@ TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
         body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
     }
     body.path_velocity = (state.center - body.start_center) / dt;
-    if (sine > 0) {
-        // Whole turns do not show in the rotation.
-        constexpr double whole_turn = 6.283185307179586;
-        const Vec3 axis = half_sine / sine;
-        const double angle = 2 * std::asin(std::min(sine, 1.0));
-        const double by_spin = dot(record.start_angular_velocity + state.angular_velocity, axis) * (dt / 2);
-        body.path_spin = ((angle + whole_turn * std::round((by_spin - angle) / whole_turn)) / dt) * axis;
-    }
+    body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
     body.path_turn = (2 / (std::max(half_cosine, min_cosine) * dt)) * half_sine;
     body.inverse_mass = state.inverse_mass;
     body.inverse_inertia = state.inverse_inertia;
@@ -151,6 +144,26 @@ struct MovingDeformables {
                                           bodies.begin());
     }
 };
+
+// Whole turns in a step do not show in the rotations before and after it. They count for what a solid holds, which was
+// braked as if it turned by less; sheets spun grains up by them that turned by more than half a turn a step.
+void count_whole_turns(const DeformableAccess& world, MovingDeformables& moving) {
+    constexpr double whole_turn = 6.283185307179586;
+    const double dt = world.settings.time_step;
+    for (const DeformableRecord* record : moving.solid_records) {
+        for (const Attachment& attachment : record->definition.attachments) {
+            const auto body = std::ranges::lower_bound(moving.bodies, attachment.body.index, {}, &TouchedBody::body);
+            if (body == moving.bodies.end() || body->body != attachment.body.index) continue;
+            const double spin = length(body->path_spin);
+            if (!(spin > 0)) continue;
+            const Vec3 axis = body->path_spin / spin;
+            const Vec3 sum =
+                world.rigid.record(body->body).start_angular_velocity + world.rigid.motion[body->body].angular_velocity;
+            const double missing = dot(sum, axis) / 2 - spin;
+            body->path_spin += (whole_turn * std::round(missing * dt / whole_turn) / dt) * axis;
+        }
+    }
+}
 
 void gather_bodies(const DeformableAccess& world, MovingDeformables& moving) {
     std::vector<std::uint32_t> slots;
@@ -478,6 +491,7 @@ void advance_deformables(const DeformableAccess& world) {
         }
     }
     gather_bodies(world, moving);
+    count_whole_turns(world, moving);
     moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     find_supports(world, moving.contacts, moving.thin, moving.bodies);
