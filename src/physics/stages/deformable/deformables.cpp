@@ -148,7 +148,7 @@ struct MovingDeformables {
 // Whole turns in a step do not show in the rotations before and after it. They count for what a solid holds, which was
 // braked as if it turned by less; sheets spun grains up by them that turned by more than half a turn a step.
 void count_whole_turns(const DeformableAccess& world, MovingDeformables& moving) {
-    constexpr double whole_turn = 6.283185307179586;
+    constexpr double whole_turn = 6.283185307179586;  // rad
     const double dt = world.settings.time_step;
     for (const DeformableRecord* record : moving.solid_records) {
         for (const Attachment& attachment : record->definition.attachments) {
