@@ -220,7 +220,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     }
     if (compliance == 0) return;
     // Of the rope alone there, across its line: along it it is far stiffer (docs/physics/ropes.md, "On round bodies").
-    constexpr double self_stiffness = 6;  // Test: Knot.HoldsWhatDrawsItTight
+    constexpr double self_stiffness = 6;  // times that, 1. Test: Knot.ARopeLiesOnItselfInAHeap
     spring.stiffness = is_rope ? self_stiffness * std::min(directed[0], directed[1])
                                : settings.stiffness_factor * std::max({mass[0], mass[1], load}) / (h * h);
     spring.inertia = 1 / (compliance * h * h);

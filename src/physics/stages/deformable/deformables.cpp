@@ -244,8 +244,9 @@ bool correct_solids(const DeformableAccess& world, const MovingDeformables& movi
 // I). A light one between its solid and the floor does so within a fraction of a substep: the substeps of a step in
 // which that is to be expected are shorter.
 int substeps_for(const DeformableAccess& world, const MovingDeformables& moving) {
-    constexpr double max_turn = 2;    // of that rate times a substep: the limit of stability
-    constexpr int max_substeps = 16;  // Test of both: HeldBall.GainsNothingBetweenASolidAndTheFloor
+    // Of that rate times a substep, 1: the limit of stability. Test: HeldBall.GainsNothingBetweenASolidAndTheFloor
+    constexpr double max_turn = 2;
+    constexpr int max_substeps = 16;  // Test: HeldBall.GainsNothingBetweenASolidAndTheFloor
     const int wanted = world.settings.deformable_substeps;
     std::vector<double> force(moving.bodies.size(), 0), arm(moving.bodies.size(), 0);
     for (const SolidContact& contact : moving.contacts) {

@@ -13,8 +13,9 @@ constexpr double min_move = 1.0 / 64;  // part that a rope goes of its moves. Te
 
 }  // namespace
 
-// Of a rope alone: where it touches itself its contacts give back no more than they had got, though their springs are
-// others by now and the solves may not have converged. So it goes, from rigid moves, only as far as that lasts.
+// Of a rope alone: where it touches itself its contacts may give back more than had pressed them, for their springs are
+// others by now and the solves may not have converged. So it goes, from rigid moves, only as far as it has no more
+// energy than by these, without those contacts.
 void ThinGroupPart::go_as_far_as_energy_lasts(std::span<const BodyInertia> inertias) {
     const std::span<const TouchSpring> touch = members_[0].touch.springs();
     const Nodes& nodes = members_[0].record().nodes();

@@ -91,7 +91,7 @@ void add_own_pair(const DeformableAccess& world, const DeformableRecord& rope, T
     find_thin_candidates(surface, surface, world.settings.time_step, pull_on(world, rope), world.workers,
                          own.candidates);
     // Half a turn about its own thickness is as near as a bend brings two places together.
-    constexpr double pi = 3.14159265358979323846;
+    constexpr double pi = 3.14159265358979323846;  // rad
     leave_out_neighbours(surface, std::max(2 * surface.edge_length, pi * surface.radius), own.candidates);
     own.held.are_of_one = true;
     own.held.of_a.resize(rope.nodes().size(), false);
