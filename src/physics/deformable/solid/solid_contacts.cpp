@@ -321,13 +321,19 @@ double SolidContacts::sweep(const Group& group, double h, bool forwards) {
     return moved;
 }
 
+// The compliance in the directions that a contact holds; in the others, in which no force acts, anything but zero.
+Mat3 SolidContacts::compliance_of_held(const Active& active) {
+    const double size = trace(active.compliance) / 3;
+    return active.held * active.compliance * active.held + size * (Mat3::identity() - active.held);
+}
+
 // Solves one contact with the others fixed; returns how far it had to move.
 double SolidContacts::relax(Active& active, double h) {
     const SolidContact& contact = *active.contact;
     const double softness = settings_.softness;
     if (contact.holds) {
         const Vec3 off = active.held * (active.slid + moved(active) + soft_part(active, contact.force));
-        apply(active, (-1 / (1 + softness)) * embody::solve(active.compliance, off), h);
+        apply(active, (-1 / (1 + softness)) * embody::solve(compliance_of_held(active), off), h);
         return length(off);
     }
 

@@ -78,6 +78,7 @@ private:
     void find_compliance(Active& active, double h) const;
     [[nodiscard]] Vec3 moved(const Active& active) const;
     void apply(const Active& active, Vec3 force, double h);
+    [[nodiscard]] static Mat3 compliance_of_held(const Active& active);
     double relax(Active& active, double h);
     void find_groups(std::size_t solids, std::span<const TouchedBody> bodies);
     void find_forces(double h, TaskPool& workers);

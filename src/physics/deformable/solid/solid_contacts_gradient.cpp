@@ -41,6 +41,8 @@ Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
             return {};
         case State::slides:
             return dot(v, active.normal) * active.normal;
+        case State::holds:
+            return active.held * v;
         default:
             return v;
     }
@@ -97,7 +99,8 @@ void SolidContacts::respond(const Group& group, double h, TaskPool& workers) {
 // z = M⁻¹ r, M a contact's own compliance; r·z.
 double SolidContacts::precondition(Active& active) {
     ContactGradient& own = active.gradient;
-    own.z = free_part(active, embody::solve(active.compliance, own.r));
+    const Mat3 compliance = active.contact->holds ? compliance_of_held(active) : active.compliance;
+    own.z = free_part(active, embody::solve(compliance, own.r));
     return dot(own.r, own.z);
 }
 

@@ -73,8 +73,9 @@ Bounds SolidDeformable::bounds() const {
 // stand apart. Of second order P must not be softer than the true stiffness at all, and a is greater.
 void SolidDeformable::make_factor(double h) {
     factor_h_ = h;
+    factor_weight_ = metric_weight();
     std::vector<Mat3> diagonal(nodes_.size(), Mat3::zero()), blocks(elements_.edges().size(), Mat3::zero());
-    elements_.add_stiffness_blocks(metric_weight() + damping_ / h, diagonal, blocks);
+    elements_.add_stiffness_blocks(factor_weight_ + damping_ / h, diagonal, blocks);
     factor_rotations_ = elements_.node_rotations();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const double inertia = nodes_.mass[i] / (h * h);
@@ -105,11 +106,11 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings&
             nodes_.mean_velocity[i] -= (h / 2) * gravity + back * turning;
         }
     }
+    // After substeps that went on in first order the metric is stiffer than it must be, until one was of second again.
+    const bool is_too_stiff = elements_.is_second_order() && factor_weight_ != metric_weight();
     elements_.begin_substep(h);
-    if (factor_h_ != h) {
-        elements_.forget_past();
-        make_factor(h);
-    }
+    if (factor_h_ != h) elements_.forget_past();
+    if (factor_h_ != h || is_too_stiff) make_factor(h);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         start_[i] = nodes_.position[i];
         nodes_.position[i] += h * nodes_.mean_velocity[i];
@@ -229,7 +230,17 @@ void SolidDeformable::finish() {
 bool SolidDeformable::gains_energy() {
     if (is_let_alone()) keep_momenta();
     found_surplus_ = find_surplus();
-    return is_too_much(found_surplus_);
+    const bool gains = is_too_much(found_surplus_);
+    if (gains && elements_.is_second_order()) go_on_in_first_order();
+    return gains;
+}
+
+// Where a contact brings a node to a speed within a substep, the stress of second order, 8/27 of the new strain's, does
+// not do the work that the strain stores.
+void SolidDeformable::go_on_in_first_order() {
+    elements_.use_end_alone();
+    energy_at_start_.reset();
+    if (factor_weight_ < metric_weight()) make_factor(h_);
 }
 
 bool SolidDeformable::is_let_alone() const {
@@ -310,7 +321,7 @@ double SolidDeformable::elastic_energy() const {
 // more.
 double SolidDeformable::kept_energy(const SolidElements::SubstepEnergy& energy) const {
     if (!elements_.is_second_order()) return energy.end;
-    const double of_metric = metric_weight() * energy.tetrahedra;
+    const double of_metric = factor_weight_ * energy.tetrahedra;
     return energy.middle + std::max(0.0, of_metric + (1.0 / 27 - 0.25) * energy.change);
 }
 

@@ -117,6 +117,7 @@ private:
     [[nodiscard]] bool is_let_alone() const;
     [[nodiscard]] double kinetic_energy() const;
     [[nodiscard]] double metric_weight() const;
+    void go_on_in_first_order();
     [[nodiscard]] double kept_energy(const SolidElements::SubstepEnergy& energy) const;
     [[nodiscard]] double elastic_energy() const;
     [[nodiscard]] double gas_energy(std::span<const Vec3> positions) const;
@@ -152,9 +153,9 @@ private:
 
     // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
     DissectedCholesky factor_;
-    double factor_h_ = 0;
-    std::vector<Quat> factor_rotations_;   // around the nodes when it was made
-    std::vector<std::uint8_t> is_pinned_;  // by node
+    double factor_h_ = 0, factor_weight_ = 0;  // the latter of the stiffness without damping
+    std::vector<Quat> factor_rotations_;       // around the nodes when it was made
+    std::vector<std::uint8_t> is_pinned_;      // by node
     NodeCompliance compliance_;
 };
 

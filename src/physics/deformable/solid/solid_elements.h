@@ -46,6 +46,8 @@ public:
     /// Whether the elastic stress of a substep is of second order in time: of the strains at its end, its start and the
     /// starts of the two substeps before, by fixed weights. Else it is that of the strain at its end.
     [[nodiscard]] bool is_second_order() const { return is_second_order_; }
+    /// For the rest of this substep the elastic stress is that of the strain at its end, which never makes energy.
+    void use_end_alone() { is_second_order_ = false; }
     /// Weight of the strain at the end of a substep in its elastic stress.
     [[nodiscard]] double end_weight() const { return is_second_order_ ? 8.0 / 27 : 1; }
     /// The next substep begins at rest, as far as its strains know.
