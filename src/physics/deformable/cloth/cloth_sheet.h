@@ -116,6 +116,8 @@ private:
     [[nodiscard]] double young_drag(std::size_t triangle, double added) const;
     void foresee_bending(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
     void prestretch();
+    void find_stiffness_by_mass();
+    void limit_stiffness(double h);
     [[nodiscard]] std::vector<Vec3> whole_moves(double h) const;
     void undamp(const ClothTriangle& triangle, double damping, Strain& strain) const;
     void find_strains(const Substep& substep, std::span<const Vec3> moves, TaskPool& workers);
@@ -124,7 +126,9 @@ private:
     // Distance of layers: as if a body of no thickness lay between them.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 
-    Cloth cloth_;
+    Cloth cloth_;                                         // with the stiffness that is solved
+    double stretch_stiffness_ = 0, shear_stiffness_ = 0;  // of the definition, N/m
+    double stiffness_by_mass_ = 0;                        // greatest of a node, of a sheet of 1 N/m, 1/kg
     Nodes nodes_;
     std::vector<ClothTriangle> triangles_;
     ScalarRows bending_;  // times bend stiffness, N/m
