@@ -329,12 +329,14 @@ private:
                 "grains in motion; decomposition: convex parts of models of the database; tetrahedra: fillings of soft "
                 "ones; grains: slopes of heaps "
                 "and cost of grains; cloth: cost of a tablecloth; soft: cost of cushions; fluid: cost of "
-                "water with floating boxes; convergence: soft bodies and liquids beside theory at several resolutions; "
+                "water with floating boxes; tanks: energy and momenta of closed tanks over a minute; convergence: soft "
+                "bodies and liquids beside theory at several resolutions; "
                 "catalogue: search in the database, filled with variants")
             ->capture_default_str()
-            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "matter", "decomposition",
-                                   "tetrahedra", "grains", "cloth", "soft", "fluid", "convergence", "catalogue"})
-                        .description(""));
+            ->check(
+                CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "matter", "decomposition",
+                               "tetrahedra", "grains", "cloth", "soft", "fluid", "tanks", "convergence", "catalogue"})
+                    .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);
         c.app->add_option("--bodies", c.into->bodies, "Suite scaling: largest number of bodies")

@@ -133,7 +133,7 @@ struct SceneArguments {
 };
 struct BenchArguments {
     /// Or "stability", "simbenchmark", "scaling", "matter", "decomposition", "tetrahedra", "grains", "cloth",
-    /// "soft", "fluid", "convergence", "catalogue", "race".
+    /// "soft", "fluid", "tanks", "convergence", "catalogue", "race".
     std::string suite = "table1";
     std::filesystem::path database;       ///< of decomposition, tetrahedra and catalogue
     std::vector<std::string> race_words;  ///< for the race's own program

@@ -17,6 +17,7 @@
 #include "cli/bench_simbenchmark.h"
 #include "cli/bench_soft.h"
 #include "cli/bench_stability.h"
+#include "cli/bench_tanks.h"
 #include "cli/bench_tetrahedra.h"
 #include "cli/commands.h"
 #include "cli/output.h"
@@ -63,6 +64,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "soft") return run_soft(arguments);
     if (arguments.suite == "grains") return run_grains(arguments);
     if (arguments.suite == "matter") return run_matter(arguments);
+    if (arguments.suite == "tanks") return run_tanks(arguments);
     if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)

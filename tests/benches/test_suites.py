@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""`embody bench simbenchmark`, `scaling` and `decomposition` as a person or a program calls them.
+"""`embody bench simbenchmark`, `scaling`, `tanks` and `decomposition` as a person or a program calls them.
 
 Usage: test_suites.py EMBODY
 """
@@ -20,7 +20,7 @@ def bench(*words: str) -> subprocess.CompletedProcess:
 
 class Suites(unittest.TestCase):
     def test_wrong_words_are_named(self):
-        for suite in ("simbenchmark", "scaling"):
+        for suite in ("simbenchmark", "scaling", "tanks"):
             result = bench(suite, "--scene", "no_such_scene")
             self.assertEqual(result.returncode, 1)
             self.assertIn("no_such_scene", result.stderr)
@@ -46,6 +46,16 @@ class Suites(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         (row,) = [line.split() for line in result.stdout.splitlines() if line.startswith("columns_asleep")]
         self.assertEqual((row[1], row[2], row[-1]), ("1000", "0", "right"))
+
+    def test_tanks_lose_energy_and_no_water(self):
+        result = bench("tanks", "--scene", "slosh", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (tank,) = json.loads(result.stdout)["tanks"]
+        self.assertEqual((tank["tank"], tank["end_state"], tank["lost"]), ("slosh", "right", 0))
+        times, energies = [moment[0] for moment in tank["moments"]], [moment[1] for moment in tank["moments"]]
+        self.assertEqual(len(times), 241)
+        self.assertAlmostEqual(times[-1], 60)
+        self.assertLess(energies[-1], 0.1 * energies[0])
 
     def test_decomposition_measures_a_model_of_the_database(self):
         with tempfile.TemporaryDirectory() as folder:
