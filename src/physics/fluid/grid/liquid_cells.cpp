@@ -79,7 +79,7 @@ void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
 // Pressure of liquid that goes on to a cell from its neighbour, in direction `step`, as the last pressures there tell.
 float pressure_from(const FluidGrid& grid, int neighbour, int step) {
     const float here = grid.pressure[neighbour], before = grid.pressure[neighbour - step];
-    return here > 0 && before > 0 ? 2 * here - before : here;
+    return here > 0 && before > 0 ? std::min(2 * here - before, here) : here;
 }
 
 // Between obstacles less than a cell apart there is liquid as far as its pressure reaches, cell by cell

@@ -199,7 +199,7 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                 const int cell = grid.index(c), here = region.index(c);
                 for (int axis = 0; axis < 3; ++axis) {
                     float& open = grid.open[axis][cell];
-                    if (region.fraction(axis, here) > 0 && open < 1) films_.meet(grid, axis, c);
+                    if (!moving.is_small && region.fraction(axis, here) > 0 && open < 1) films_.meet(grid, axis, c);
                     // The spread volume of grains leaves the room between spheres that lie as close as they can.
                     const float wide = 1 - grid.static_fraction[axis][cell];
                     const float kept = moving.is_small ? std::max(min_open, (1 - closest_packing) * wide) : 0;
@@ -271,7 +271,12 @@ void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
         for (std::size_t i = range.first; i < range.last; ++i) measure_moving(moving_[i], grid);
     });
     films_.begin(grid);
-    for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
+    // Small ones last: particles pass through them, so liquid needs no film to be between them.
+    for (const bool are_small : {false, true}) {
+        for (std::size_t i = 0; i < moving_.size(); ++i) {
+            if (moving_[i].is_small == are_small) place_moving(moving_[i], static_cast<int>(i), grid);
+        }
+    }
 
     // A cell that is shut all around is obstacle, even if its centre is on the seam of two obstacles.
     grid.for_tiles(workers, [&](const Cell& corner) {

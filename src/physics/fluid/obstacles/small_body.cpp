@@ -47,8 +47,10 @@ void drag_small_body(FluidGrid& grid, const Mixture& liquids, double dt, MovingO
     float gradient[3];
     const double wet = std::clamp<double>(sample_center(grid, grid.density, place, gradient), 0, 1);
     const double volume = obstacle.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);
-    Vec3 liquid;                             // the liquid's velocity around the body
-    std::array<double, 3> answer{}, mass{};  // change of that by a unit impulse; the weighted mass at the faces
+    Vec3 liquid;  // the liquid's velocity around the body
+    // Change of that by a unit impulse; the weighted mass at the faces; that over what full faces have.
+    std::array<double, 3> answer{}, mass{}, fullness{};
+    const double h = grid.cell_size();
     std::array<FaceWeights, 3> around;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         around[axis] = face_weights(grid, place, static_cast<int>(axis));
@@ -63,15 +65,18 @@ void drag_small_body(FluidGrid& grid, const Mixture& liquids, double dt, MovingO
         if (!(weights > 0)) return;
         liquid[static_cast<int>(axis)] /= weights;
         answer[axis] = squares / (weights * mass[axis]);
+        fullness[axis] = std::min(1.0, mass[axis] / (weights * density * h * h * h));
     }
     const Vec3 slip = liquid - moving.linear_velocity;
     const double speed = length(slip), free = drag_of_sphere(radius, speed, density, viscosity);
-    const double drag = wet * dt * without_own_flow(free, speed, density, viscosity, grid.cell_size());
+    const double drag = wet * dt * without_own_flow(free, speed, density, viscosity, h);
     if (!(drag > 0)) return;
-    // What holds the liquid around to the rest within this time: the viscosity spreads the impulse.
-    const double held = grid_mobility * viscosity * grid.cell_size() * dt;
+    // What holds the liquid around to the rest within this time: the viscosity spreads the impulse, as far as there is
+    // liquid. Without that drops and the rim of a film got the impulse of what is not there.
+    const double spread = grid_mobility * viscosity * h * dt;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<int>(axis);
+        const double held = fullness[axis] * spread;
         const double impulse = slip[a] / (1 / drag + obstacle.inverse_mass + 1 / (1 / answer[axis] + held));
         obstacle.impulse[a] += impulse;
         moving.linear_velocity[a] += impulse * obstacle.inverse_mass;
