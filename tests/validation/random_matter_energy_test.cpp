@@ -83,6 +83,16 @@ TEST(RandomMatter, GrainsBetweenASheetAndASolidAreNotSpunUp) {
     }
 }
 
+// Of balls that turned by more than half a turn a step the solid saw the turn the other way and drove it on.
+TEST(RandomMatter, GrainsUnderASolidAreNotSpunUp) {
+    const MatterScene scene = random_matter(30, 0b101);
+    const double first = energy(*scene.world);
+    for (int i = 0; i < 300; ++i) {
+        scene.world->step();
+        ASSERT_LT(energy(*scene.world), (1 + allowed_gain_of_matter) * first) << "at step " << i;
+    }
+}
+
 // The drag of grains gave drops and the rim of a film what only a full cell of a viscous liquid can pass on, and liquid
 // was made up between grains in the air: 50 and 10^18 times the energy.
 TEST(RandomMatter, GrainsGainNothingFromThinLiquid) {

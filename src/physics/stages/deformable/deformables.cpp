@@ -165,6 +165,23 @@ void count_whole_turns(const DeformableAccess& world, MovingDeformables& moving)
     }
 }
 
+// A ball's rotation changes nothing, so its spin need not be told by the rotations before and after the step, which
+// show none of its whole turns: solids that touched one at 70 turns a second drove it as if it turned the other way.
+// Not of one that a solid holds, for which the turns are counted.
+void find_spins_of_balls(const DeformableAccess& world, MovingDeformables& moving) {
+    std::vector<bool> is_held(moving.bodies.size(), false);
+    for (const SolidContact& contact : moving.contacts) {
+        if (contact.holds) is_held[contact.body] = true;
+    }
+    for (const SolidContact& contact : moving.contacts) {
+        if (!contact.has_body() || is_held[contact.body]) continue;
+        TouchedBody& body = moving.bodies[contact.body];
+        const BodyRecord& record = world.rigid.record(body.body);
+        if (!record.is_ball || !body.is_dynamic || !(body.step_time > 0)) continue;
+        body.path_spin = (record.start_angular_velocity + world.rigid.motion[body.body].angular_velocity) / 2;
+    }
+}
+
 void gather_bodies(const DeformableAccess& world, MovingDeformables& moving) {
     std::vector<std::uint32_t> slots;
     for (const DeformableRecord* record : moving.records) {
@@ -494,6 +511,7 @@ void advance_deformables(const DeformableAccess& world) {
     gather_bodies(world, moving);
     count_whole_turns(world, moving);
     moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
+    find_spins_of_balls(world, moving);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     find_supports(world, moving.contacts, moving.thin, moving.bodies);
     moving.groups = find_thin_groups(world, moving.thin, moving.bodies);
