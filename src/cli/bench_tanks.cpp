@@ -14,12 +14,12 @@ namespace embody::cli {
 namespace {
 
 constexpr double seconds = 60, pause = 0.25, told_every = 10;
-constexpr double most_gain = 1e-3;  // above the energy at the start, of that
+constexpr double max_gain = 1e-3;  // above the energy at the start, of that
 
 std::string judge(const convergence::TankRun& run) {
     if (run.lost > 0) return std::to_string(run.lost) + " particles are lost";
     if (!std::isfinite(run.moments.back().energy)) return "not finite";
-    return run.highest > (1 + most_gain) * run.moments[0].energy ? "energy has come from nothing" : "";
+    return run.highest > (1 + max_gain) * run.moments[0].energy ? "energy has come from nothing" : "";
 }
 
 }  // namespace

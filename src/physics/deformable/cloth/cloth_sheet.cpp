@@ -89,7 +89,7 @@ void ClothSheet::find_stiffness_by_mass() {
 // the equations are no longer definite; sheets of 3e8 N/m had numbers that are none within a second. A sheet of 0.2
 // kg/m² in a mesh of 25 mm has up to 1.9 MN/m so, which 500 N/m draw out by 0.03 %.
 void ClothSheet::limit_stiffness(double h) {
-    constexpr double max_ratio = 1 << 22;  // Test: StiffCloth.IsTameHoweverStiff
+    constexpr double max_ratio = 1 << 22;  // of that inertia, 1. Test: StiffCloth.IsTameHoweverStiff
     const double most = max_ratio / (h * h * stiffness_by_mass_);
     cloth_.stretch_stiffness = std::min(stretch_stiffness_, most);
     cloth_.shear_stiffness = std::min(shear_stiffness_, most);
