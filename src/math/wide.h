@@ -37,6 +37,20 @@ using WideMask = std::int32_t __attribute__((vector_size(4 * EMBODY_LANES)));
 
 #define EMBODY_WIDE_INLINE [[gnu::always_inline]] static inline
 
+/// As many doubles as fill the register of the lanes' floats.
+using WideDouble = double __attribute__((vector_size(4 * EMBODY_LANES)));
+constexpr int double_lanes = EMBODY_LANES / 2;
+/// All bits of a double's lane set or none.
+using WideDoubleMask = std::int64_t __attribute__((vector_size(4 * EMBODY_LANES)));
+
+EMBODY_WIDE_INLINE WideDouble load(const double* from) {
+    WideDouble value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+}
+EMBODY_WIDE_INLINE void store(double* to, WideDouble value) { std::memcpy(to, &value, sizeof value); }
+EMBODY_WIDE_INLINE WideDouble select(WideDoubleMask mask, WideDouble yes, WideDouble no) { return mask ? yes : no; }
+
 EMBODY_WIDE_INLINE Wide load(const float* from) {
     Wide value;
     std::memcpy(&value, from, sizeof value);
@@ -54,6 +68,7 @@ EMBODY_WIDE_INLINE Wide broadcast(float value) { return Wide{} + value; }
 EMBODY_WIDE_INLINE Wide select(WideMask mask, Wide yes, Wide no) { return mask ? yes : no; }
 
 #if defined(__AVX512F__) && EMBODY_LANES == 16
+EMBODY_WIDE_INLINE WideDouble square_root(WideDouble a) { return _mm512_maskz_sqrt_pd(0xFF, a); }
 // With a mask of ones: the plain forms warn about an undefined value within gcc 12's own header.
 EMBODY_WIDE_INLINE Wide minimum(Wide a, Wide b) { return _mm512_maskz_min_ps(0xFFFF, a, b); }
 EMBODY_WIDE_INLINE Wide maximum(Wide a, Wide b) { return _mm512_maskz_max_ps(0xFFFF, a, b); }
@@ -62,10 +77,12 @@ EMBODY_WIDE_INLINE Wide square_root(Wide a) { return _mm512_maskz_sqrt_ps(0xFFFF
 EMBODY_WIDE_INLINE Wide minimum(Wide a, Wide b) { return _mm256_min_ps(a, b); }
 EMBODY_WIDE_INLINE Wide maximum(Wide a, Wide b) { return _mm256_max_ps(a, b); }
 EMBODY_WIDE_INLINE Wide square_root(Wide a) { return _mm256_sqrt_ps(a); }
+EMBODY_WIDE_INLINE WideDouble square_root(WideDouble a) { return _mm256_sqrt_pd(a); }
 #elif defined(__SSE2__) && EMBODY_LANES == 4
 EMBODY_WIDE_INLINE Wide minimum(Wide a, Wide b) { return _mm_min_ps(a, b); }
 EMBODY_WIDE_INLINE Wide maximum(Wide a, Wide b) { return _mm_max_ps(a, b); }
 EMBODY_WIDE_INLINE Wide square_root(Wide a) { return _mm_sqrt_ps(a); }
+EMBODY_WIDE_INLINE WideDouble square_root(WideDouble a) { return _mm_sqrt_pd(a); }
 #else
 EMBODY_WIDE_INLINE Wide minimum(Wide a, Wide b) { return a < b ? a : b; }
 EMBODY_WIDE_INLINE Wide maximum(Wide a, Wide b) { return a > b ? a : b; }
@@ -73,8 +90,17 @@ EMBODY_WIDE_INLINE Wide square_root(Wide a) {
     for (int i = 0; i < lanes; ++i) a[i] = __builtin_sqrtf(a[i]);
     return a;
 }
+EMBODY_WIDE_INLINE WideDouble square_root(WideDouble a) {
+    for (int i = 0; i < double_lanes; ++i) a[i] = __builtin_sqrt(a[i]);
+    return a;
+}
 #endif
 
+EMBODY_WIDE_INLINE bool any(WideDoubleMask mask) {
+    std::int64_t sum = 0;
+    for (int i = 0; i < double_lanes; ++i) sum |= mask[i];
+    return sum != 0;
+}
 /// Whether any lane is set; the lanes are full masks.
 EMBODY_WIDE_INLINE bool any(WideMask mask) {
 #if defined(__AVX512F__) && EMBODY_LANES == 16

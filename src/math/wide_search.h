@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// The maximum of many numbers and its index: doubles side by side, half as many as floats, and masks with a bit for
-// each lane. Only for kernels, see math/wide.h. Equal bits for all widths: a maximum does not depend on the order of
-// the numbers except for the sign of zero, which is always made positive.
+// The maximum of many numbers and its index, and masks with a bit for each lane. Only for kernels, see math/wide.h.
+// Equal bits for all widths: a maximum does not depend on the order of the numbers except for the sign of zero, which
+// is always made positive.
 #pragma once
 
 #include "math/wide.h"
 
 namespace embody::EMBODY_WIDE {
 
-constexpr int double_lanes = EMBODY_LANES / 2;
-
-using WideDouble = double __attribute__((vector_size(4 * EMBODY_LANES)));
-
-EMBODY_WIDE_INLINE WideDouble load(const double* from) {
-    WideDouble value;
-    std::memcpy(&value, from, sizeof value);
-    return value;
-}
-EMBODY_WIDE_INLINE void store(double* to, WideDouble value) { std::memcpy(to, &value, sizeof value); }
 EMBODY_WIDE_INLINE WideDouble broadcast(double value) { return WideDouble{} + value; }
 
 // The larger and smaller numbers, lane by lane, and masks with bit i: a[i] == b[i], a[i] <= b[i].

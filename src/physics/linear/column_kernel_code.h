@@ -76,18 +76,27 @@ void dot_blocks(const float* a, std::size_t a_stride, const float* b, std::size_
     for (std::size_t k = 0; k < 9; ++k) result[k] = sum[k].total();
 }
 
-void subtract_scaled(double* a, const double* column, double factor, std::size_t count) {
-    using Doubles = double __attribute__((vector_size(4 * EMBODY_LANES)));
-    constexpr std::size_t at_once = EMBODY_LANES / 2;  // doubles of a register
+// Each number loses the products in the order of the columns: the same bits as one column after the other.
+template <int columns>
+EMBODY_WIDE_INLINE void subtract_products(double* a, const double* column, std::size_t stride, const double* factor,
+                                          std::size_t count) {
+    constexpr std::size_t at_once = double_lanes;
     std::size_t i = 0;
     for (; i + at_once <= count; i += at_once) {
-        Doubles to, from;
-        std::memcpy(&to, a + i, sizeof to);
-        std::memcpy(&from, column + i, sizeof from);
-        to -= from * factor;
-        std::memcpy(a + i, &to, sizeof to);
+        WideDouble to = load(a + i);
+        for (std::size_t k = 0; k < columns; ++k) to -= load(column + k * stride + i) * factor[k * stride];
+        store(a + i, to);
     }
-    for (; i < count; ++i) a[i] -= column[i] * factor;
+    for (; i < count; ++i) {
+        for (std::size_t k = 0; k < columns; ++k) a[i] -= column[k * stride + i] * factor[k * stride];
+    }
+}
+
+void subtract_scaled(double* a, const double* column, std::size_t stride, std::size_t columns, const double* factor,
+                     std::size_t count) {
+    std::size_t k = 0;
+    for (; k + 6 <= columns; k += 6) subtract_products<6>(a, column + k * stride, stride, factor + k * stride, count);
+    for (; k < columns; ++k) subtract_products<1>(a, column + k * stride, stride, factor + k * stride, count);
 }
 
 // Movements of the nodes of a tile by the forces on node j, and of j by the forces on these, as far as `back` collects

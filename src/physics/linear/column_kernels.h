@@ -27,8 +27,10 @@ struct ColumnKernels {
     /// aᵢ·bⱼ into result[3 i + j], of three columns each, `a_stride` and `b_stride` numbers apart; any `count`.
     void (*dot_blocks)(const float* a, std::size_t a_stride, const float* b, std::size_t b_stride, std::size_t count,
                        float result[9]);
-    /// a −= column factor, `count` numbers, any.
-    void (*subtract_scaled)(double* a, const double* column, double factor, std::size_t count);
+    /// a −= Σ column factor over so many columns, `count` numbers each, any; columns, and their factors, are `stride`
+    /// numbers apart.
+    void (*subtract_scaled)(double* a, const double* column, std::size_t stride, std::size_t columns,
+                            const double* factor, std::size_t count);
     /// moves += W forces, W the symmetric matrix of 3×3 blocks whose rows `compliance` holds as for add_moves, 9 stride
     /// numbers a node. Each block below the diagonal is read once and serves both of its nodes; of the pairs of nodes
     /// those are done whose later one is in a tile (of column_multiple nodes) from `first_tile` to below

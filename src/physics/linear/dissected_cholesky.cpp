@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "math/kernel_width.h"
 #include "physics/linear/column_kernels.h"
@@ -19,20 +20,25 @@ std::size_t stride_of(const Front& front) {
 // The row at which kernels begin a column: the last multiple of column_multiple that is not below the diagonal.
 std::size_t first_row(std::size_t column) { return column / column_multiple * column_multiple; }
 
-// Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column).
-void eliminate(std::vector<double>& a, std::size_t size, std::size_t own) {
+// Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column), some columns at
+// a time: what they take from those behind them is read and written once.
+void eliminate(double* a, std::size_t size, std::size_t own) {
     constexpr double huge = 1e30;  // a pivot of what must not move: far above any, its square is still a double
+    constexpr std::size_t at_once = 6;
     const auto subtract_scaled = widest_kernels<ColumnKernels>().subtract_scaled;
-    for (std::size_t j = 0; j < own; ++j) {
-        double* column = &a[j * size];
-        const double pivot = column[j] > 0 ? std::sqrt(column[j]) : huge;
-        column[j] = pivot;
-        for (std::size_t i = j + 1; i < size; ++i) column[i] /= pivot;
-        for (std::size_t k = j + 1; k < size; ++k) {
-            const double factor = column[k];
-            if (factor == 0) continue;
-            subtract_scaled(&a[k * size + k], column + k, factor, size - k);
+    for (std::size_t first = 0; first < own; first += at_once) {
+        const std::size_t last = std::min(own, first + at_once);
+        for (std::size_t j = first; j < last; ++j) {
+            double* column = a + j * size;
+            const double pivot = column[j] > 0 ? std::sqrt(column[j]) : huge;
+            column[j] = pivot;
+            for (std::size_t i = j + 1; i < size; ++i) column[i] /= pivot;
+            for (std::size_t k = j + 1; k < last; ++k)
+                subtract_scaled(a + k * size + k, column + k, size, 1, column + k, size - k);
         }
+        const double* columns = a + first * size;
+        for (std::size_t k = last; k < size; ++k)
+            subtract_scaled(a + k * size + k, columns + k, size, last - first, columns + k, size - k);
     }
 }
 
@@ -67,11 +73,13 @@ void DissectedCholesky::factor(std::span<const Mat3> diagonal, std::span<const E
         edges_of[order_.front_of[earlier]].push_back(e);
     }
 
-    std::vector<std::vector<double>> left(order_.fronts.size());  // what a front leaves its parent, lower triangle
+    using Triangle = std::unique_ptr<double[]>;        // square, of which the lower triangle counts
+    std::vector<Triangle> left(order_.fronts.size());  // what a front leaves its parent
+    std::vector<double> a;
     for (std::uint32_t f = 0; f < order_.fronts.size(); ++f) {
         const Front& front = order_.fronts[f];
         const std::size_t size = 3 * front.size(), own = 3 * front.own();
-        std::vector<double> a(size * size, 0.0);
+        a.assign(size * size, 0.0);
         const auto local = [&](std::uint32_t place) -> std::size_t {
             if (place < front.last) return place - front.first;
             return front.own() +
@@ -100,17 +108,17 @@ void DissectedCholesky::factor(std::span<const Mat3> diagonal, std::span<const E
             for (std::size_t c = 0; c < rows; ++c) {
                 for (std::size_t r = c; r < rows; ++r) a[to(c) * size + to(r)] += left[child_index][c * rows + r];
             }
-            left[child_index] = {};
+            left[child_index].reset();
         }
 
-        eliminate(a, size, own);
+        eliminate(a.data(), size, own);
         float* value = &value_[first_value_[f]];
         for (std::size_t c = 0; c < own; ++c) {
             for (std::size_t r = c; r < size; ++r)
                 value[c * stride_of(front) + r] = static_cast<float>(a[c * size + r]);
         }
         const std::size_t rest = size - own;
-        left[f].resize(rest * rest);
+        left[f] = std::make_unique_for_overwrite<double[]>(rest * rest);
         for (std::size_t c = 0; c < rest; ++c) {
             for (std::size_t r = c; r < rest; ++r) left[f][c * rest + r] = a[(own + c) * size + own + r];
         }

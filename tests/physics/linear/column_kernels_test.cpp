@@ -57,7 +57,7 @@ std::vector<float> results(const ColumnKernels& kernels) {
     kernels.add_all_moves(moves.data(), all_pairs.compliance.data(), columns.data(), stride, 0, 3);
     std::vector<double> long_ones(moves.begin(), moves.end());
     const std::vector<double> taken(compliance.begin(), compliance.end());
-    kernels.subtract_scaled(long_ones.data(), taken.data(), 1.3, count);
+    kernels.subtract_scaled(long_ones.data(), taken.data(), stride, 8, taken.data() + 40, count);
     for (const auto* part : {&moves, &w}) all.insert(all.end(), part->begin(), part->end());
     all.insert(all.end(), sums, sums + 3);
     all.insert(all.end(), blocks, blocks + 9);

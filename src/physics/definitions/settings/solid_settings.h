@@ -18,9 +18,6 @@ struct SolidSettings {
     /// J. F. O'Brien, A. W. Bargteil, J. K. Hodgins, "Graphical modeling and animation of ductile fracture", 2002,
     /// bound it too. Test: Settings.AreNoticed.
     double max_plastic_strain = 0.5;
-    /// Half the turn in a substep below which damping uses the rotation at the substep's start for that at its end,
-    /// rad. Source: the error of the stretch is its square, 1e-6. Test: Settings.AreNoticed.
-    double same_rotation_turn = 1e-3;
     /// Fraction of its volume at rest below which the pressure of enclosed gas grows no further. Test:
     /// Settings.AreNoticed.
     double min_gas_fraction = 0.05;
@@ -47,7 +44,6 @@ template <>
 inline constexpr auto settings_of<SolidSettings> = std::tuple{
     Setting{"node_fraction", &SolidSettings::node_fraction, 0, 1},
     Setting{"max_plastic_strain", &SolidSettings::max_plastic_strain, 1e-4, 100},
-    Setting{"same_rotation_turn", &SolidSettings::same_rotation_turn, 0, 1, "rad"},
     Setting{"min_gas_fraction", &SolidSettings::min_gas_fraction, 1e-4, 1},
     Setting{"max_stiffness_ratio", &SolidSettings::max_stiffness_ratio, 0.01, 1e3},
     Setting{"max_corrections", &SolidSettings::max_corrections, 0, 1000},

@@ -46,9 +46,9 @@ SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
     find_surroundings(rest.size());
     find_edges();
     deformation_.resize(size());
-    start_deformation_.resize(size());
     for (std::vector<Mat3>& past : past_) past.assign(size(), Mat3::zero());
     for (std::vector<Mat3>& past : node_past_) past.assign(rest.size(), Mat3::zero());
+    node_deformation_.resize(rest.size());
     node_stress_.resize(rest.size());
     rotation_f_.resize(size());
     gradient_f_.resize(size());
@@ -147,18 +147,28 @@ void SolidElements::begin_substep(double h) {
     damping_rate_ = damping_ / h;
 }
 
-// The strain at the start of a substep, by the rotation there; `rotation` is the one at its end. The square of small
-// turns between the two is negligible, as long as the damping is not large.
-Mat3 SolidElements::start_strain(const Mat3& deformation, Quat rotation, const Mat3& plastic) const {
-    const double same = settings_.same_rotation_turn;  // half the angle, rad
-    Mat3 stretch = transpose(to_matrix(rotation)) * deformation;
-    // Four times the half angle, where the stretch is near 1.
-    const Vec3 skewness{stretch(2, 1) - stretch(1, 2), stretch(0, 2) - stretch(2, 0), stretch(1, 0) - stretch(0, 1)};
-    if (!(length_squared(skewness) * (1 + damping_rate_) < 16 * same * same && trace(stretch) > 0)) {
-        follow_rotation(deformation, rotation);
-        stretch = transpose(to_matrix(rotation)) * deformation;
+// Elastic strains of these deformations in axes that are close to `rotation`.
+void SolidElements::find_strains(std::span<const Mat3> deformation, std::vector<Quat> rotation,
+                                 std::span<const Mat3> plastic, std::span<Mat3> strain) {
+    follow_rotations(deformation, rotation);
+    for (std::size_t i = 0; i < strain.size(); ++i)
+        strain[i] = symmetric_part(transpose(to_matrix(rotation[i])) * deformation[i]) - Mat3::identity() - plastic[i];
+}
+
+// The strains when this substep began. The rotations of the last linearise() are close to those there.
+void SolidElements::begin_strains(std::span<const Vec3> start) {
+    if (is_second_order_) {
+        shift(past_);
+        shift(node_past_);
     }
-    return symmetric_part(stretch) - Mat3::identity() - plastic;
+    for (std::size_t e = 0; e < size(); ++e) deformation_[e] = gradient(e, start);
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i) node_deformation_[i] = mean_around(i, deformation_);
+    find_strains(deformation_, rotation_, plastic_, past_[0]);
+    find_strains(node_deformation_, node_rotation_, node_plastic_, node_past_[0]);
+    for (Past* past : {&past_, &node_past_}) {
+        if (!has_past_) (*past)[1] = (*past)[2] = (*past)[0];
+    }
+    has_past_ = true;
 }
 
 void SolidElements::shift(Past& past) {
@@ -167,11 +177,7 @@ void SolidElements::shift(Past& past) {
 }
 
 void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, std::span<Vec3> force) {
-    const bool is_first = std::exchange(is_substep_new_, false);
-    if (is_first && is_second_order_) {
-        shift(past_);
-        shift(node_past_);
-    }
+    if (std::exchange(is_substep_new_, false)) begin_strains(start);
     const auto to_single = [](Quat rotation) {
         const Mat3 r = to_matrix(rotation);
         Matrix m;
@@ -180,28 +186,16 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         }
         return m;
     };
-    for (std::size_t e = 0; e < size(); ++e) {
-        deformation_[e] = gradient(e, position);
-        follow_rotation(deformation_[e], rotation_[e]);
-        if (is_first) {
-            start_deformation_[e] = gradient(e, start);
-            past_[0][e] = start_strain(start_deformation_[e], rotation_[e], plastic_[e]);
-            if (!has_past_) past_[1][e] = past_[2][e] = past_[0][e];
-        }
-        rotation_f_[e] = to_single(rotation_[e]);
-    }
+    for (std::size_t e = 0; e < size(); ++e) deformation_[e] = gradient(e, position);
+    follow_rotations(deformation_, rotation_);
+    std::ranges::transform(rotation_, rotation_f_.begin(), to_single);
     // Means around the nodes.
-    for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        const Mat3 deformation = mean_around(i, deformation_);
-        follow_rotation(deformation, node_rotation_[i]);
-        node_rotation_f_[i] = to_single(node_rotation_[i]);
-        if (is_first) {
-            node_past_[0][i] = start_strain(mean_around(i, start_deformation_), node_rotation_[i], node_plastic_[i]);
-            if (!has_past_) node_past_[1][i] = node_past_[2][i] = node_past_[0][i];
-        }
-        node_stress_[i] = stress(node_moduli_, deformation, node_rotation_[i], node_plastic_[i], node_past_, i);
-    }
-    has_past_ = true;
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i) node_deformation_[i] = mean_around(i, deformation_);
+    follow_rotations(node_deformation_, node_rotation_);
+    std::ranges::transform(node_rotation_, node_rotation_f_.begin(), to_single);
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i)
+        node_stress_[i] =
+            stress(node_moduli_, node_deformation_[i], node_rotation_[i], node_plastic_[i], node_past_, i);
     for (std::size_t e = 0; e < size(); ++e) {
         Mat3 whole = stress(element_moduli_, deformation_[e], rotation_[e], plastic_[e], past_, e);
         for (const std::uint32_t node : corners_[e]) whole += 0.25 * node_stress_[node];
@@ -286,21 +280,16 @@ double SolidElements::energy_density(const Moduli& moduli, const Mat3& strain) {
 }
 
 SolidElements::SubstepEnergy SolidElements::substep_energy(std::span<const Vec3> position) const {
-    const auto strain_of = [](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
-        follow_rotation(deformation, rotation);
-        return symmetric_part(transpose(to_matrix(rotation)) * deformation) - Mat3::identity() - plastic;
-    };
     SubstepEnergy sum;
-    std::vector<Mat3> deformation(size());
-    for (std::size_t e = 0; e < size(); ++e) {
-        deformation[e] = gradient(e, position);
-        const Mat3 end = strain_of(deformation[e], rotation_[e], plastic_[e]);
-        add_element_energy(e, has_past_ ? past_[0][e] : end, end, sum);
-    }
-    for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        const Mat3 end = strain_of(mean_around(i, deformation), node_rotation_[i], node_plastic_[i]);
-        add_energy(node_moduli_, node_volume_[i], has_past_ ? node_past_[0][i] : end, end, sum);
-    }
+    std::vector<Mat3> deformation(size()), around(node_rotation_.size()), end(size());
+    for (std::size_t e = 0; e < size(); ++e) deformation[e] = gradient(e, position);
+    find_strains(deformation, rotation_, plastic_, end);
+    for (std::size_t e = 0; e < size(); ++e) add_element_energy(e, has_past_ ? past_[0][e] : end[e], end[e], sum);
+    for (std::size_t i = 0; i < around.size(); ++i) around[i] = mean_around(i, deformation);
+    end.resize(around.size());
+    find_strains(around, node_rotation_, node_plastic_, end);
+    for (std::size_t i = 0; i < around.size(); ++i)
+        add_energy(node_moduli_, node_volume_[i], has_past_ ? node_past_[0][i] : end[i], end[i], sum);
     return sum;
 }
 

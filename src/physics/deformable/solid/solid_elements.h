@@ -111,7 +111,9 @@ private:
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     void limit_strain(Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
-    [[nodiscard]] Mat3 start_strain(const Mat3& deformation, Quat rotation, const Mat3& plastic) const;
+    static void find_strains(std::span<const Mat3> deformation, std::vector<Quat> rotation,
+                             std::span<const Mat3> plastic, std::span<Mat3> strain);
+    void begin_strains(std::span<const Vec3> start);
     void find_edges();
     void find_surroundings(std::size_t nodes);
 
@@ -132,7 +134,7 @@ private:
     std::vector<std::array<std::uint32_t, 2>> edges_;
 
     // Of the last linearise(), for add_stiffness().
-    std::vector<Mat3> deformation_, start_deformation_, node_stress_;
+    std::vector<Mat3> deformation_, node_deformation_, node_stress_;
     std::vector<Matrix> rotation_f_, node_rotation_f_, gradient_f_, node_stress_f_;
 };
 
