@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "foundation/heap.h"
 
 namespace embody::cli {
 namespace {
@@ -28,6 +29,7 @@ struct Runner {
 }  // namespace embody::cli
 
 int main(int count, char** words) {
+    embody::keep_freed_memory();
     const embody::cli::Parsed parsed = embody::cli::parse_arguments(count, words);
     const int code = parsed.arguments ? std::visit(embody::cli::Runner{}, *parsed.arguments) : parsed.exit_code;
     return embody::cli::finish_output(code);

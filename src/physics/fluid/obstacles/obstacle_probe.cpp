@@ -216,7 +216,7 @@ bool ObstacleProbe::look_at(const Bounds& box, double reach) {
     reach_ = reach;
     const Bounds wide = enlarged(box, reach);
     near_pieces_.clear();
-    near_triangles_.clear();
+    near_triangles_.begin(box, reach);
     const CollisionShape::Data& data = shape_->data();
     if (data.is_plane) {
         const Vec3 normal = rotate(pose_.rotation, data.plane_normal);
@@ -236,8 +236,9 @@ bool ObstacleProbe::look_at(const Bounds& box, double reach) {
             if (normal == Vec3{}) continue;
             auto corners = data.surface->corners(index);
             for (Vec3& corner : corners) corner = transform_point(pose_, corner);
-            near_triangles_.push_back({corners, rotate(pose_.rotation, normal)});
+            near_triangles_.add({corners, rotate(pose_.rotation, normal)});
         }
+        near_triangles_.finish();
     }
     return !near_pieces_.empty() || !near_triangles_.empty();
 }
@@ -247,7 +248,8 @@ ObstacleDistance ObstacleProbe::nearest_triangle(Vec3 p) const {
     // directly at p determines the side; of two that face opposite directions, the front counts.
     double best = reach_ * reach_, best_side = 0;
     Vec3 away;
-    for (const Triangle& triangle : near_triangles_) {
+    for (const std::uint32_t index : near_triangles_.around(p)) {
+        const NearTriangle& triangle = near_triangles_[index];
         const double height = dot(p - triangle.corners[0], triangle.normal);
         if (height * height > best * (1 + 1e-9)) continue;
         const Vec3 from = p - closest_on_triangle(p, triangle.corners);
@@ -356,7 +358,8 @@ std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing(Vec3 a, Vec3 b) c
 
     // Both sides of triangles count. T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
     std::optional<Crossing> first;
-    for (const Triangle& triangle : near_triangles_) {
+    for (const std::uint32_t index : near_triangles_.along(a, b)) {
+        const NearTriangle& triangle = near_triangles_[index];
         const auto& [c0, c1, c2] = triangle.corners;
         const Vec3 e1 = c1 - c0, e2 = c2 - c0, p = cross(displacement, e2);
         const double determinant = dot(e1, p);

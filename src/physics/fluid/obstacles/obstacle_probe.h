@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "physics/collision/shapes/convex.h"
 #include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/namespace.h"
+#include "physics/fluid/obstacles/near_triangles.h"
 
 namespace embody::physics::fluid {
 
@@ -60,10 +60,6 @@ private:
         Vec3 position;
         Bounds bounds;
     };
-    struct Triangle {
-        std::array<Vec3, 3> corners;
-        Vec3 normal;
-    };
     [[nodiscard]] ObstacleDistance nearest_triangle(Vec3 p) const;
     [[nodiscard]] std::optional<Crossing> crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const;
 
@@ -74,7 +70,7 @@ private:
     std::vector<Piece> pieces_;
     double reach_ = 0;
     std::vector<std::uint32_t> near_pieces_;
-    std::vector<Triangle> near_triangles_;
+    NearTriangles near_triangles_;
     std::vector<std::uint32_t> found_;
 };
 
