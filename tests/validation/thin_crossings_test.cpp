@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "foundation/random.h"
 #include "physics/definitions/deformable_primitives.h"
+#include "validation/random_bodies.h"
 #include "validation/reference.h"
 
 namespace embody::physics {
@@ -49,19 +50,6 @@ int crossings(const World& world, DeformableHandle one, DeformableHandle other) 
     }
     return count;
 }
-
-class Random {
-public:
-    explicit Random(unsigned seed) : generator_(seed) {}
-    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
-    Quat turn() {
-        const Vec3 axis{between(-1, 1), between(-1, 1), between(-1, 1)};
-        return from_axis_angle(normalized(axis, {0, 1, 0}), between(0, pi));
-    }
-
-private:
-    std::mt19937 generator_;
-};
 
 // A strip whose ends are held by bodies that turn against each other, a turn a second.
 void twist(double turns, double width, double edge, double stiffness) {
@@ -118,7 +106,7 @@ TEST(ThinCrossings, ThrownSheetsPassThroughNothingAndGainNothing) {
             if (std::fabs(net.nodes[k].x) > 0.499 && std::fabs(net.nodes[k].z) > 0.499) net.pinned.push_back(k);
         }
         auto thrown = cloth_rectangle(0.4, 0.4, random.between(0.03, 0.08), {.area_density = random.between(0.1, 1)});
-        thrown.pose = {{0, 0.5, 0}, random.turn()};
+        thrown.pose = {{0, 0.5, 0}, random_rotation(random)};
         thrown.linear_velocity = {random.between(-2, 2), -random.between(5, 20), random.between(-2, 2)};
         const DeformableHandle one = world->create_deformable(net).value();
         const DeformableHandle two = world->create_deformable(thrown).value();
@@ -140,7 +128,7 @@ TEST(ThinCrossings, SheetsThatFallOnAFloorFoldAndStayOutOfThemselves) {
         const auto world = make_world({});
         add_plane(*world, friction(random.between(0.2, 0.8)));
         auto sheet = cloth_rectangle(0.5, 0.4, 0.03, {.area_density = random.between(0.1, 0.4)});
-        sheet.pose = {{0, 0.6, 0}, random.turn()};
+        sheet.pose = {{0, 0.6, 0}, random_rotation(random)};
         sheet.angular_velocity = {random.between(-5, 5), random.between(-5, 5), random.between(-5, 5)};
         const DeformableHandle fallen = world->create_deformable(sheet).value();
         for (int step = 0; step < 120; ++step) {
