@@ -100,6 +100,17 @@ GoldenScene slapping_sheets() {
     return scene;
 }
 
+// A sheet thrown at one that lies on the floor and over a ball: nodes on a body are held by the guard.
+GoldenScene thrown_sheet() {
+    GoldenScene scene{make_world()};
+    World& world = *scene.world;
+    add_plane(world, {});
+    add_ball(world, 0.05, {.kind = still, .position = {0, 0.05, 0}});
+    add(world, cloth_rectangle(0.4, 0.4, 0.05, {.area_density = 0.2}), {0, 0.002, 0});
+    add(world, cloth_rectangle(0.3, 0.3, 0.04, {.area_density = 0.2}), {0.02, 0.05, 0.01}, {0, -20, 0});
+    return scene;
+}
+
 // A plate comes down on a sheet and on one with two layers until both have less room than they need.
 GoldenScene pressed_sheets() {
     GoldenScene scene{make_world()};
@@ -202,6 +213,7 @@ constexpr SettingScene scenes[] = {
     {"deformable", "loaded_sheets", loaded_sheets, 20},
     {"deformable", "thick_sheets", thick_sheets, 15},
     {"deformable", "slapping_sheets", slapping_sheets, 12},
+    {"deformable", "thrown_sheet", thrown_sheet, 20},
     {"deformable", "pressed_sheets", pressed_sheets, 15},
     {"deformable", "heavy_ropes", heavy_ropes, 20},
     {"deformable", "sleeping_brick", sleeping_brick, 360},
