@@ -11,11 +11,10 @@ namespace embody {
 
 void keep_freed_memory() {
 #if defined(__GLIBC__)
-    constexpr int most_unused = 1 << 30;  // bytes at the end of a heap
-    constexpr int least_mapped =
-        32 << 20;  // bytes of one piece from which the system maps it: the most that glibc takes
-    mallopt(M_TRIM_THRESHOLD, most_unused);
-    mallopt(M_MMAP_THRESHOLD, least_mapped);
+    constexpr int max_unused = 1 << 30;   // bytes at the end of a heap
+    constexpr int min_mapped = 32 << 20;  // bytes of a piece that the system maps alone: glibc takes no larger limit
+    mallopt(M_TRIM_THRESHOLD, max_unused);
+    mallopt(M_MMAP_THRESHOLD, min_mapped);
 #endif
 }
 

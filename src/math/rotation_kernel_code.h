@@ -8,18 +8,7 @@
 namespace embody::EMBODY_WIDE {
 namespace {
 
-struct Vector {
-    WideDouble x, y, z;
-};
-EMBODY_WIDE_INLINE Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-EMBODY_WIDE_INLINE Vector operator*(const Vector& a, WideDouble s) { return {a.x * s, a.y * s, a.z * s}; }
-EMBODY_WIDE_INLINE WideDouble dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-EMBODY_WIDE_INLINE Vector cross(const Vector& a, const Vector& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-EMBODY_WIDE_INLINE Vector select_vector(WideDoubleMask mask, const Vector& yes, const Vector& no) {
-    return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
-}
+using Vector = WideVector<WideDouble>;
 
 struct Quaternion {
     WideDouble x, y, z, w;
@@ -43,12 +32,12 @@ EMBODY_WIDE_INLINE Quaternion turned(const Quaternion& a, const Vector& half) {
 
 // Newton's method for the largest tr(Rᵀ F) in all lanes that have not reached it.
 EMBODY_WIDE_INLINE Quaternion follow_wide(const Vector deformation[3], Quaternion rotation) {
-    constexpr int most_rounds = 20;
+    constexpr int max_rounds = 20;
     constexpr double close = 1e-10;     // rad
     constexpr double last_turn = 1e-5;  // rad: the error after it is about its square, which is below `close`
     const WideDouble zero{};
     WideDoubleMask goes_on = zero == zero;
-    for (int round = 0; round < most_rounds && any(goes_on); ++round) {
+    for (int round = 0; round < max_rounds && any(goes_on); ++round) {
         // W = Rᵀ F is symmetric where R is right. A turn by ω (in R's axes) changes its skew part by (tr W - W) ω.
         Vector axis[3];
         find_columns(rotation, axis);
@@ -74,7 +63,7 @@ EMBODY_WIDE_INLINE Quaternion follow_wide(const Vector deformation[3], Quaternio
         if (any(goes_on & ~is_near)) {
             const WideDouble cautious =
                 select(spread < 0, -spread, spread) + 1e-9 * (1 + square_root(dot(skewness, skewness)));
-            turn = select_vector(is_near, newton, skewness * (1 / cautious));
+            turn = select(is_near, newton, skewness * (1 / cautious));
         }
         const WideDouble square = dot(turn, turn);  // of its angle
         goes_on &= square > close * close;

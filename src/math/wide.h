@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -236,10 +237,12 @@ EMBODY_WIDE_INLINE void scatter_rows(float* base, const std::int32_t* row, std::
 
 #endif
 
-/// Three numbers a lane.
-struct Wide3 {
-    Wide x, y, z;
+/// Three numbers a lane, floats or doubles.
+template <class Number>
+struct WideVector {
+    Number x, y, z;
 };
+using Wide3 = WideVector<Wide>;
 EMBODY_WIDE_INLINE Wide3 load_3(const float* from) { return {load(from), load(from + lanes), load(from + 2 * lanes)}; }
 EMBODY_WIDE_INLINE void store_3(float* to, const Wide3& v) {
     store(to, v.x);
@@ -297,14 +300,28 @@ EMBODY_WIDE_INLINE void store_quads(float* to, const Wide3& v) {
         std::memcpy(to + 4 * lane, rows[lane % 4] + lane / 4 * 4, 4 * sizeof(float));
 }
 
-EMBODY_WIDE_INLINE Wide3 operator+(const Wide3& a, const Wide3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-EMBODY_WIDE_INLINE Wide3 operator-(const Wide3& a, const Wide3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-EMBODY_WIDE_INLINE Wide3 operator*(const Wide3& a, Wide s) { return {a.x * s, a.y * s, a.z * s}; }
-EMBODY_WIDE_INLINE Wide dot(const Wide3& a, const Wide3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-EMBODY_WIDE_INLINE Wide3 cross(const Wide3& a, const Wide3& b) {
+template <class Number>
+EMBODY_WIDE_INLINE WideVector<Number> operator+(const WideVector<Number>& a, const WideVector<Number>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Number>
+EMBODY_WIDE_INLINE WideVector<Number> operator-(const WideVector<Number>& a, const WideVector<Number>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Number>
+EMBODY_WIDE_INLINE WideVector<Number> operator*(const WideVector<Number>& a, std::type_identity_t<Number> s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+template <class Number>
+EMBODY_WIDE_INLINE Number dot(const WideVector<Number>& a, const WideVector<Number>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Number>
+EMBODY_WIDE_INLINE WideVector<Number> cross(const WideVector<Number>& a, const WideVector<Number>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-EMBODY_WIDE_INLINE Wide3 select(WideMask mask, const Wide3& yes, const Wide3& no) {
+template <class Number, class Mask>
+EMBODY_WIDE_INLINE WideVector<Number> select(Mask mask, const WideVector<Number>& yes, const WideVector<Number>& no) {
     return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 

@@ -77,7 +77,7 @@ void dot_blocks(const float* a, std::size_t a_stride, const float* b, std::size_
 }
 
 // Each number loses the products in the order of the columns: the same bits as one column after the other.
-template <int columns>
+template <std::size_t columns>
 EMBODY_WIDE_INLINE void subtract_products(double* a, const double* column, std::size_t stride, const double* factor,
                                           std::size_t count) {
     constexpr std::size_t at_once = double_lanes;
@@ -94,8 +94,10 @@ EMBODY_WIDE_INLINE void subtract_products(double* a, const double* column, std::
 
 void subtract_scaled(double* a, const double* column, std::size_t stride, std::size_t columns, const double* factor,
                      std::size_t count) {
+    constexpr std::size_t at_once = physics::linear::columns_at_once;
     std::size_t k = 0;
-    for (; k + 6 <= columns; k += 6) subtract_products<6>(a, column + k * stride, stride, factor + k * stride, count);
+    for (; k + at_once <= columns; k += at_once)
+        subtract_products<at_once>(a, column + k * stride, stride, factor + k * stride, count);
     for (; k < columns; ++k) subtract_products<1>(a, column + k * stride, stride, factor + k * stride, count);
 }
 

@@ -13,6 +13,9 @@ namespace embody::physics::linear {
 /// Rows of numbers are filled up with zeros to a multiple of this.
 inline constexpr std::size_t column_multiple = 16;
 
+/// So many columns at a time are subtracted fastest.
+inline constexpr std::size_t columns_at_once = 6;
+
 /// Any width of the processor's registers gives the same bits.
 struct ColumnKernels {
     /// moves += compliance (x, y, z): three rows of moves, and of nine rows, `stride` numbers each, the first three by

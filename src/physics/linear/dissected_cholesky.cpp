@@ -24,10 +24,9 @@ std::size_t first_row(std::size_t column) { return column / column_multiple * co
 // a time: what they take from those behind them is read and written once.
 void eliminate(double* a, std::size_t size, std::size_t own) {
     constexpr double huge = 1e30;  // a pivot of what must not move: far above any, its square is still a double
-    constexpr std::size_t at_once = 6;
     const auto subtract_scaled = widest_kernels<ColumnKernels>().subtract_scaled;
-    for (std::size_t first = 0; first < own; first += at_once) {
-        const std::size_t last = std::min(own, first + at_once);
+    for (std::size_t first = 0; first < own; first += columns_at_once) {
+        const std::size_t last = std::min(own, first + columns_at_once);
         for (std::size_t j = first; j < last; ++j) {
             double* column = a + j * size;
             const double pivot = column[j] > 0 ? std::sqrt(column[j]) : huge;

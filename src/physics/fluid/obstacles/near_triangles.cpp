@@ -27,7 +27,7 @@ void NearTriangles::finish() {
     if (all_.size() <= few) return;
     const Vec3 extent = box_.size();
     for (int axis = 0; axis < 3; ++axis) {
-        size_[axis] = static_cast<int>(std::clamp(extent[axis] / (reach_ / 2), 1.0, max_bins));
+        size_[axis] = static_cast<int>(extent[axis] > 0 ? std::clamp(2 * extent[axis] / reach_, 1.0, max_bins) : 1);
         inverse_edge_[axis] = extent[axis] > 0 ? size_[axis] / extent[axis] : 0;
     }
     // Counted first, then entered.
